@@ -18,8 +18,11 @@ from slow_run import usual, usual_models
 import eomgen
 from eomgen.documents.figures import Picture
 from eomgen.documents.letters import NamesArtist, PageBox, room_for
-from eomgen.documents.space_drawing import rest_picture, sight
+from eomgen.documents.space_drawing import drawing_at_rest, rest_picture, sight
+from eomgen.mechanics.dynamics.system import system_of
 from eomgen.scene import forms, plane_strokes, space_strokes
+from eomgen.scene.bodies import parameters_as_drawn
+from eomgen.scene.making import scene_of_system
 from eomgen.scene.scene import ROLES, Mark, Scene, drawn_start, frame_at, plain_number
 from eomgen.scene.space_strokes import space_drawing
 from eomgen.scene.strokes import PictureSizes, SceneNumbers
@@ -478,3 +481,57 @@ def test_what_hangs_on_a_spring_has_no_guide():
 def _sides(model):
     marks = model.scene().marks
     return {mark.of: mark.form.side for mark in marks if mark.role in ("spring", "damper")}
+
+
+SPOOL = """
+eomgen = 1
+space = "plane"
+parameters = { R = 0.5, r = 0.2, F = 10 }
+[points]
+A = [1, 3]
+[coordinates]
+x = 0
+[bodies.spool]
+SHAPE
+joint = { kind = "placed", at = ["x", "R"], angle = "-x/R" }
+[bodies.load]
+mass = 2
+joint = { kind = "placed", at = ["2 + x*(1 + r/R)", "R + r"] }
+[constraints.rope]
+kind = "string"
+path = [{ body = "spool", radius = "r", turn = "cw" }, "load.origin"]
+[forces]
+push = { kind = "between", points = ["A", "load.origin"], pull = "-F" }
+pulled = { kind = "between", points = ["A", "spool.origin"], pull = "F/r^2" }
+"""
+
+
+@pytest.mark.parametrize(
+    ("shape", "rims"),
+    [
+        ("mass = 3\ninertia = 1", {("chord", 0.2)}),
+        ('shape = { kind = "disc", mass = 3, radius = "R" }', {("none", 0.2)}),
+        ('shape = { kind = "disc", mass = 3, radius = "r" }', set()),
+    ],
+    ids=["drum", "hub", "shown"],
+)
+def test_a_drum_or_hub_is_drawn_where_no_shape_shows_it_and_turns_with_its_body(shape, rims):
+    """A circle of the radius on which the rope lies, about the body's own centre, in its axes; a hub is no disc."""
+    system = system_of(eomgen.loads(SPOOL.replace("SHAPE", shape)))
+    known = parameters_as_drawn(system)
+    arcs = [m for m in scene_of_system(system).marks if m.role == "rim" and m.form.kind == "arc"]
+    found = {(m.form.close, float(evaluate((m.form.radius,), known, FLOAT)[0])) for m in arcs}
+    assert found == rims and {(m.of, m.frame) for m in arcs} <= {("spool", 1)}
+
+
+def test_a_pull_that_is_no_law_of_the_distance_is_a_cylinder_between_its_ends():
+    """Between a pin on the ground and a hinge on the body; F/r^2 is a thin line, for nothing is there."""
+    system = system_of(eomgen.loads(SPOOL.replace("SHAPE", "mass = 3\ninertia = 1")))
+    marks = scene_of_system(system).marks
+    kinds = {
+        of: [m.form.kind for m in marks if m.of == of and m.role in ("cylinder", "spring")] for of in ("push", "pulled")
+    }
+    assert kinds == {"push": ["cylinder"], "pulled": ["line"]}
+    assert [m.form.symbol for m in marks if m.of == "push" and m.role == "support"] == ["pin", "hinge"]
+    (stroke,) = (s for s in drawing_at_rest(scene_of_system(system)).strokes if s.role == "cylinder")
+    assert np.allclose(stroke.path[0, [0, -1]], [[1, 3], [2, 0.7]])

@@ -157,9 +157,11 @@ LINES: Mapping[str, tuple[str, float]] = {  # colour and width [points]
     "string": (INK, 1.3),
     "spring": (INK, 1.2),
     "damper": (INK, 1.2),
+    "cylinder": (INK, 1.2),
     "body": (BODY, 1.5),
     "hole": (BODY, 1.5),
     "inertia": (BODY, 1.0),
+    "rim": (BODY, 1.2),
     "joint": (GREY, 1.2),
     "solid": (GREY, 1.0),
     "support": (GREY, 1.2),
@@ -172,7 +174,7 @@ LINES: Mapping[str, tuple[str, float]] = {  # colour and width [points]
     "force": (LOAD, 1.5),
     "reaction": (REACTION, 1.5),
 }
-FILLS: Mapping[str, str] = {"body": TINT, "inertia": "#e3ebf3", "joint": PAPER, "support": PAPER}
+FILLS: Mapping[str, str] = {"body": TINT, "inertia": "#e3ebf3", "rim": TINT, "joint": PAPER, "support": PAPER}
 OPEN, FINE = 2.6, 0.9  # widths of a body that is a line, and of marks on something [points]
 RANKS: Mapping[str, int] = {"reaction": 0, "force": 1, "dimension": 2, "label": 3, "axes": 5}
 MARGIN, NARROWEST = 3.5, 0.4  # around what is drawn [symbol units]; the shorter side, of the longer
@@ -233,7 +235,7 @@ def look_of(stroke: Stroke, colors: Mapping[str, str]) -> StrokeLook:
         colors: of bodies that have one of their own.
     """
     color, width = LINES[stroke.role]
-    own = colors.get(stroke.of) if stroke.role in ("body", "inertia", "hole") else None
+    own = colors.get(stroke.of) if stroke.role in ("body", "inertia", "hole", "rim") else None
     color = own or color
     if stroke.dot:
         return StrokeLook(color, color, 3.5 if stroke.role == "center" else 7)

@@ -502,7 +502,7 @@ class _Page:
                 masses[of] = own @ R.T + p
             elif kind == "symbol" and role in ("support", "joint") and of in self._bodies:
                 joints.append((mark["symbol"], of, R @ self.spot(mark["at"]) + p))
-            elif kind in ("spring", "damper"):
+            elif kind in ("spring", "damper", "cylinder"):
                 ends[of] = (R @ self.spot(mark["a"]) + p, R @ self.spot(mark["b"]) + p)
             elif kind == "arrow" and role in ("force", "reaction"):
                 at, way = R @ self.spot(mark["at"]) + p, R @ self.spot(mark["vector"])

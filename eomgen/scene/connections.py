@@ -35,6 +35,7 @@ from eomgen.scene.bodies import gimbal_of, is_block, parameters_as_drawn, seen, 
 from eomgen.scene.forms import (
     ArrowForm,
     CoupleForm,
+    CylinderForm,
     DamperForm,
     FieldForm,
     LabelForm,
@@ -190,8 +191,19 @@ def force_elements(system: System) -> list[Mark]:
             grounded = [at for at, (body, _) in zip((a, b), places, strict=True) if body is None]
             found += walls(system, grounded, free, name)
         found += elements(a, b, element.stiffness is not None, element.damping is not None, name, sides.get(name, 0))
-        if element.pull is not None:
+        if element.pull is not None and "r" in element.pull.names:
             found.append(Mark(LineForm((a, b), fine=True), 0, "spring", name))
+        elif element.pull is not None:
+            found += _cylinder(system, a, b, [body for body, _ in places], name)
+    return found
+
+
+def _cylinder(system: System, a: Vector, b: Vector, bodies: Sequence[str | None], of: str) -> list[Mark]:
+    """A cylinder whose pull is no law of its length, on hinges at both ends."""
+    found = [Mark(CylinderForm(a, b), 0, "cylinder", of)]
+    if system.scope.model.space == "plane":
+        kinds = ("pin" if body is None else "hinge" for body in bodies)
+        found += [Mark(SymbolForm(kind, at), 0, "support", of) for kind, at in zip(kinds, (a, b), strict=True)]
     return found
 
 
@@ -220,7 +232,7 @@ def constraint_marks(system: System) -> list[Mark]:
         scene = SystemScene(system.motion, f"constraints.{name}")
         rows = [row for row in system.constraints.rows if row.constraint == name]
         if strands := constraint.strands_at(scene):
-            found += string_marks(strands, name)
+            found += [*string_marks(strands, name), *_rims(system, strands)]
         elif (meeting := constraint.meeting()) is not None:
             found += _met(system, meeting, rows, name)
         elif not any(row.part for row in rows):
@@ -245,11 +257,36 @@ def string_marks(strands: Sequence[Strand], of: str) -> list[Mark]:
             found.append(Mark(_wrapped(one.second, one.d, other.d), 0, "string", of))
     stops = {id(stop): stop for strand in strands for stop in (strand.first, strand.second)}
     for stop in stops.values():
-        shape = None if stop.body is None else stop.scene.shape(stop.body)
-        if stop.round and (shape is None or shape.is_point):
+        if stop.round and stop.body is None:
             r = function("abs", stop.offset)
             found.append(Mark(ArcForm(stop.center, r, r, close="chord"), 0, "joint", of))
     return found
+
+
+def _rims(system: System, strands: Sequence[Strand]) -> Iterator[Mark]:
+    """The drums, hubs and steps of bodies on which strings lie, where no shape shows them; the larger first."""
+    stops = {(stop.place, stop.offset): stop for strand in strands for stop in (strand.first, strand.second)}
+    round_ones = [stop for stop in stops.values() if stop.round and stop.body is not None]
+    for stop in sorted(round_ones, key=lambda stop: -abs(stop.scene.value_at_start(stop.offset) or 0.0)):
+        body, at = stop.place
+        assert body is not None, "only these were taken"
+        shown = list(_arcs(system, body))
+        if any(is_zero(stop.offset - r) or is_zero(stop.offset + r) for r in shown):
+            continue
+        r, frame = -1 * stop.offset if _is_negative(stop) else stop.offset, system.motion.index[body] + 1
+        yield Mark(ArcForm(at, r, r, close="none" if shown else "chord"), frame, "rim", body)
+        if not shown:
+            yield Mark(LineForm((at, at + r * Vector((1, 0, 0))), fine=True), frame, "rim", body)
+
+
+def _arcs(system: System, body: str) -> Iterator[Scalar]:
+    """Radii of the circles that the shapes of a body show."""
+    part = system.scope.model.bodies[body]
+    shapes = [piece.shape for piece in part.parts] if part.parts is not None else [part.shape] if part.shape else []
+    for shape in shapes:
+        for form in () if shape.is_point else seen(system, shape.forms(system.scope.value)):
+            if isinstance(form, ArcForm):
+                yield form.radius
 
 
 def _wrapped(stop: Stop, arriving: Vector, leaving: Vector) -> ArcForm:

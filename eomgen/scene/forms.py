@@ -41,6 +41,13 @@ class DamperForm(SpringForm):
 
 
 @dataclass(frozen=True)
+class CylinderForm(SpringForm):
+    """A hydraulic cylinder at a, its rod ends at b."""
+
+    kind: ClassVar[str] = "cylinder"
+
+
+@dataclass(frozen=True)
 class RodForm(SpringForm):
     """A thin round bar from a to b, in the plane a thick line."""
 
@@ -208,6 +215,7 @@ ALL: tuple[type[Form], ...] = (
     RodForm,
     SpringForm,
     DamperForm,
+    CylinderForm,
     WheelForm,
     TrackForm,
     SymbolForm,

@@ -270,7 +270,7 @@ def picture_reported(drawing: Drawing, scene: Scene, frame: int) -> ReportedPict
     """Places of bodies, ends of springs and arrows that the strokes of a drawing show at a frame."""
     d = 2 if scene.plane else 3
     symbols = {mark.of for mark in scene.marks if mark.role == "body" and mark.form.kind not in LENGTHS}
-    whole = ("spring", "damper") if scene.plane else ("spring",)  # in space a damper has several parts
+    whole = ("spring", "damper", "cylinder") if scene.plane else ("spring",)  # in space a damper has several parts
     springs = {mark.of: mark.form.kind for mark in scene.marks if mark.form.kind in whole}
     clouds: dict[str, list[np.ndarray]] = {}
     ends = {}

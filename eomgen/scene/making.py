@@ -322,7 +322,7 @@ def _vector(v: Iterable[float]) -> Vector:
 # -- cut free ----------------------------------------------------------------------------------------------------
 
 
-OWN = ("body", "hole", "inertia", "member")  # roles of a body itself
+OWN = ("body", "hole", "inertia", "rim", "member")  # roles of a body itself
 NAMED = ("point", "center")  # roles of what is named on it
 
 

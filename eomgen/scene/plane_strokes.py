@@ -93,6 +93,18 @@ def _damper(form: forms.DamperForm, mark: Mark, numbers: SceneNumbers, sizes: Pi
     return [_stroke(_between(form, mark, numbers, sizes, share, aside), mark)], []
 
 
+def _cylinder(form: forms.CylinderForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
+    """A closed cylinder with its piston, and a rod that comes out of it."""
+    nan = math.nan
+    share = np.array(
+        [0.0, 0.06, nan, 0.06, 0.6, 0.6, 0.06, 0.06, nan, 0.5, 0.5, nan, 0.6, 1.0, 1.0, 0.6, nan, 1.0, 1.0]
+    )
+    aside = np.array(
+        [0.0, 0.0, nan, 0.6, 0.6, -0.6, -0.6, 0.6, nan, 0.6, -0.6, nan, 0.2, 0.2, -0.2, -0.2, nan, 0.0, 0.0]
+    )
+    return [_stroke(_between(form, mark, numbers, sizes, share, aside), mark)], []
+
+
 def _between(
     form: forms.SpringForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes, share: np.ndarray, aside: np.ndarray
 ) -> np.ndarray:
@@ -306,6 +318,7 @@ TABLE: DrawerTable = {
     forms.RodForm: _rod,
     forms.SpringForm: _spring,
     forms.DamperForm: _damper,
+    forms.CylinderForm: _cylinder,
     forms.TrackForm: _track,
     forms.SymbolForm: _symbol,
     forms.PointForm: _point,

@@ -368,6 +368,7 @@ TABLE: DrawerTable = {
     forms.RodForm: _rod,
     forms.SpringForm: _spring,
     forms.DamperForm: _damper,
+    forms.CylinderForm: _damper,
     forms.WheelForm: _wheel,
     forms.TrackForm: _track,
     forms.SymbolForm: _symbol,

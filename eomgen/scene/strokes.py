@@ -36,7 +36,9 @@ SIDES_OF_NAMES = (
 QUANTILE = 0.98  # of all arrows of a kind are no longer than that
 FORCES = ("force", "reaction")
 """Roles of forces, drawn to one scale."""
-SOLID = frozenset(("body", "inertia", "member", "string", "spring", "damper", "joint", "support", "center"))
+SOLID = frozenset(
+    ("body", "inertia", "rim", "member", "string", "spring", "damper", "cylinder", "joint", "support", "center")
+)
 """Roles that make up the extent of a picture."""
 
 

@@ -43,7 +43,7 @@ function extremes(mark, value) {
             const [x, y] = spot(mark.at), a = value(mark.radius), b = value(mark.radius_y);
             return [[x - a, y - b], [x + a, y - b], [x + a, y + b], [x - a, y + b]];
         }
-        case "spring": case "damper": case "rod": case "load": return [spot(mark.a), spot(mark.b)];
+        case "spring": case "damper": case "cylinder": case "rod": case "load": return [spot(mark.a), spot(mark.b)];
         case "point": case "symbol": return [spot(mark.at)];
         default: return [];
     }
@@ -182,7 +182,7 @@ export class PlaneView {
     }
 
     _added(mark) {
-        const holder = element("g", { class: `mark ${mark.role} ${mark.kind}${mark.fine ? " fine" : ""}${mark.hole ? " hole" : ""}` }, this.world);
+        const holder = element("g", { class: `mark ${mark.role} ${mark.kind}${mark.fine ? " fine" : ""}${mark.hole ? " hole" : ""}${mark.close === "none" ? " open" : ""}` }, this.world);
         if (mark.frame) holder.dataset.frame = mark.frame;
         this.layers.push({ frame: mark.frame, holder, moves: hasSlots(mark), drawn: false, draw: this._drawer(mark, holder) });
     }
@@ -206,6 +206,7 @@ export class PlaneView {
             case "rod": return (frame, value) => shown(made, outline([at(mark.a, value), at(mark.b, value)]));
             case "spring": return (frame, value) => shown(made, spring(at(mark.a, value), at(mark.b, value), this.unit, mark.side));
             case "damper": return (frame, value) => shown(made, damper(at(mark.a, value), at(mark.b, value), this.unit, mark.side));
+            case "cylinder": return (frame, value) => shown(made, cylinder(at(mark.a, value), at(mark.b, value), this.unit, mark.side));
             case "point": return (frame, value) => shown(made, circle(at(mark.at, value), 0.3*this.unit));
             case "track": return (frame, value) => shown(made, this._track(mark, value, at));
             case "symbol":
@@ -292,6 +293,12 @@ function spring(a, b, unit, side) {
 function damper(a, b, unit, side) {
     const [n, at] = along(a, b, side, unit), w = 0.5*unit, c = 0.4*n, d = 0.62*n;
     return outline([at(0, 0), at(c, 0)]) + outline([at(d, w), at(c, w), at(c, -w), at(d, -w)]) + outline([at(0.52*n, 0.8*w), at(0.52*n, -0.8*w)]) + outline([at(0.52*n, 0), at(n, 0)]);
+}
+
+function cylinder(a, b, unit, side) {
+    const [n, at] = along(a, b, side, unit), [w, r] = [0.6*unit, 0.2*unit], [c, d] = [0.06*n, 0.6*n];
+    const barrel = outline([at(c, w), at(d, w), at(d, -w), at(c, -w), at(c, w)]);
+    return outline([at(0, 0), at(c, 0)]) + barrel + outline([at(0.5*n, w), at(0.5*n, -w)]) + outline([at(d, r), at(n, r), at(n, -r), at(d, -r)]);
 }
 
 function arrow(from, to, head) {

@@ -9,7 +9,7 @@ const LONGEST_ARROW = 0.3;  // of the same: the arrow that 98 % of a run's are s
 const ARROWS = ["force", "reaction", "velocity"];
 const AT_REST = ["dimension", "angle", "axes", "label"];
 const COLOURS = {
-    body: "--c0", inertia: "--c0", member: "--c7", ground: "--soft", track: "--soft", string: "--c4", spring: "--c2", damper: "--c3",
+    body: "--c0", inertia: "--c0", member: "--c7", ground: "--soft", track: "--soft", string: "--c4", spring: "--c2", damper: "--c3", cylinder: "--c3", rim: "--c0",
     joint: "--c7", support: "--c7", contact: "--soft", point: "--ink", center: "--ink", force: "--c1", reaction: "--c6", velocity: "--c5", axes: "--soft",
 };
 
@@ -266,7 +266,7 @@ export class SpaceView {
                 return at(whole, at_);
             }
             case "spring": return this._spring(spot(mark.a), spot(mark.b), 0.6*unit, role);
-            case "damper": {
+            case "damper": case "cylinder": {
                 const a = spot(mark.a), b = spot(mark.b), half = a.clone().lerp(b, 0.6);
                 return [this._bar(a, half, 0.55*unit, role), this._bar(half, b, 0.2*unit, role)];
             }
