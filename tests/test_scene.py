@@ -17,7 +17,7 @@ from slow_run import usual, usual_models
 
 import eomgen
 from eomgen.documents.figures import Picture
-from eomgen.documents.letters import NamesArtist, PageBox, room_for
+from eomgen.documents.letters import NamesArtist, PageBox, dots_along, room_for
 from eomgen.documents.space_drawing import drawing_at_rest, rest_picture, sight
 from eomgen.mechanics.dynamics.system import system_of
 from eomgen.scene import forms, plane_strokes, space_strokes
@@ -283,6 +283,52 @@ def test_names_of_a_result_do_not_cover_one_another(verb, name):
     picture = getattr(eomgen, verb)(MODELS / f"{name}.toml").picture
     panels = areas_of(picture.fill, picture.size)
     assert panels[0] and not any(map(covering, panels))
+
+
+LINED = (
+    "a_frame andrews_squeezer atwood bolt_cutter car_axis cart_pole double_atwood epicyclic_gear flyball_governor "
+    "four_bar heavy_top quick_return scotch_yoke slider_crank snakeboard stewart_platform tower_crane whipple_bicycle "
+    "seeds/ch9_p7 seeds/ch22_p4"
+).split()
+
+
+def lined(picture: Picture) -> list[str]:
+    """The names of a picture in its own size that lie over a line of what is drawn, but for the one along which they
+    are written; a point at the rim of a name counts for nothing."""
+    figure = Figure(figsize=picture.size, layout="constrained")
+    FigureCanvasAgg(figure)
+    picture.fill(figure)
+    figure.draw_without_rendering()
+    found, point = [], figure.dpi / 72
+    for panel in figure.axes:
+        for artist in (artist for artist in panel.get_children() if isinstance(artist, NamesArtist)):
+            page = panel.transData.transform
+            dots = dots_along([page(line) for line in artist.lines], point)
+            areas = iter(artist.areas)
+            for (text, boxes), name in ((next(areas), name) for name in artist.names):
+                assert text == name.text, "every name has room"
+                seen = dots
+                if name.along is not None:
+                    start, end = page(np.array([name.at, name.along]))
+                    (x, y), (u, v) = (end - start) / np.hypot(*(end - start)), (dots - start).T
+                    seen = dots[abs(x * v - y * u) > point]
+                found += [text] if any(box.grown(-point).covered(seen) for box in boxes) else []
+    return found
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", usual(LINED, 3))
+def test_names_cover_no_line(name):
+    """Of twenty pictures no name lies over an edge, a spring, a dimension line or an arrow; all names are there."""
+    assert lined(rest_picture(eomgen.load(MODELS / f"{name}.toml"))) == []
+
+
+@pytest.mark.slow
+def test_numbers_along_members_stand_where_the_fewest_lines_cross():
+    """Of a picture of statics and of one of kinematics: values beside bars and loads cover no other bar."""
+    assert lined(eomgen.statics(MODELS / "fink_truss.toml").picture) == []
+    assert lined(eomgen.statics(MODELS / "gerber_frame.toml").picture) == []
+    assert lined(eomgen.kinematics(MODELS / "quick_return.toml").picture) == []
 
 
 def test_no_ellipsoid_of_inertia_hides_what_shows_its_body():

@@ -19,12 +19,13 @@ from matplotlib.text import Text
 from eomgen.documents.figures import halo
 from eomgen.frozen import dataclass
 
-RINGS = (5.0, 9.0, 14.0, 20.0, 28.0, 38.0)  # from the place to the name [points]
+RINGS = (5.0, 9.0, 14.0, 20.0, 28.0, 38.0, 50.0)  # from the place to the name [points]
 TURNS = tuple(math.pi * k / 8 for k in (2, 1, 14, 6, 3, 13, 10, 5, 0, 4, 12, 8, 15, 7, 11, 9))  # where one looks first
 APART = 1.0  # between two names [points]
 SHARES = (0.5, 0.4, 0.6, 0.3, 0.7, 0.22, 0.78)  # of a line, where the middle of what is written along it may stand
 BESIDE = 1.5  # of that from the line [points]
-STEP = 4.0  # of the dots that stand for a line that should not be covered [points]
+COVERED = 4.0  # cost of a covered dot, in rings
+STEP = 3.0  # of the dots that stand for a line that should not be covered [points]
 
 
 @dataclass(frozen=True)
@@ -106,7 +107,7 @@ def room_for(
             box = _beside(at, size, ring * point, turn)
             if not inside[1].holds(box) or any(box.meets(other) for other in kept):
                 continue
-            cost = number + 0.05 * order + 1.5 * box.covered(dots) + (0 if inside[0].holds(box) else 30)
+            cost = number + 0.05 * order + COVERED * box.covered(dots) + (0 if inside[0].holds(box) else 30)
             if cost < best[0]:
                 best = (cost, box)
     return best[1]
@@ -128,17 +129,24 @@ def slices_along(a: np.ndarray, b: np.ndarray, size: tuple[float, float], share:
 
 
 def place_along(
-    a: np.ndarray, b: np.ndarray, size: tuple[float, float], taken: Sequence[PageBox], point: float
+    a: np.ndarray, b: np.ndarray, size: tuple[float, float], taken: Sequence[PageBox], dots: np.ndarray, point: float
 ) -> tuple[float, float, list[PageBox]]:
-    """(share, away, boxes) of the best place of a text along a line: at its middle, else nearer to an end, or below."""
+    """(share, away, boxes) of the best place of a text along a line: at its middle, else nearer to an end, or below.
+
+    Args:
+        dots: points that should not be covered; those of the line itself are not meant.
+    """
     found = []
+    (x, y), (u, v) = (b - a) / (float(np.hypot(*(b - a))) or 1.0), (dots - a).T
+    crossing = dots[abs(x * v - y * u) > point]
     for side in (1, -1):
         for order, share in enumerate(SHARES):
             away = side * (0.5 * size[1] + BESIDE * point)
             boxes = slices_along(a, b, size, share, away)
             met = sum(box.meets(other) for box in boxes for other in taken)
-            found.append((met, side < 0, order, share, away, boxes))
-    *_, share, away, boxes = min(found, key=lambda each: each[:3])
+            covered = sum(box.covered(crossing) for box in boxes)
+            found.append((met, covered, side < 0, order, share, away, boxes))
+    *_, share, away, boxes = min(found, key=lambda each: each[:4])
     return share, away, boxes
 
 
@@ -197,7 +205,7 @@ class NamesArtist(Artist):
             size = text.get_window_extent(renderer)
             (x, y), wide = page(name.at), (size.width, size.height)
             if name.along is not None:
-                found = self._along(text, page(np.array([name.at, name.along])), wide, taken, point)
+                found = self._along(text, page(np.array([name.at, name.along])), wide, taken, dots)
                 self.areas.append((name.text, found))
                 taken += found
                 text.draw(renderer)
@@ -214,11 +222,13 @@ class NamesArtist(Artist):
 
     @staticmethod
     def _along(
-        text: Text, ends: np.ndarray, size: tuple[float, float], taken: list[PageBox], point: float
+        text: Text, ends: np.ndarray, size: tuple[float, float], taken: list[PageBox], dots: np.ndarray
     ) -> tuple[PageBox, ...]:
         """A text turned along a line, readable from below or from the right, and its boxes."""
+        figure = text.get_figure(root=True)
+        point = 1.0 if figure is None else figure.dpi / 72
         a, b = ends if ends[1, 0] - ends[0, 0] > -0.5 * point else ends[::-1]
-        share, away, boxes = place_along(a, b, size, taken, point)
+        share, away, boxes = place_along(a, b, size, taken, dots, point)
         e = (b - a) / (float(np.hypot(*(b - a))) or 1.0)
         text.set_position(tuple(a + share * (b - a) + away * np.array([-e[1], e[0]])))
         text.set(ha="center", va="center", rotation=math.degrees(math.atan2(e[1], e[0])), rotation_mode="anchor")
