@@ -26,6 +26,7 @@ from eomgen.cli_options import (
     FORMAT,
     FROM_REST,
     JSON,
+    LANGUAGE,
     MODEL,
     OF_PLOT,
     OUTPUT,
@@ -157,6 +158,7 @@ def check_command(
 @main.command("derive")
 @with_form
 @WAY
+@LANGUAGE
 @UNITS(help="The unit of every name, equation, reaction and output too.")
 @click.option("--full", is_flag=True, help="Print everything, however long, with names for the long parts.")
 @click.option("--section", metavar="NAME", help="Only this section: motion, positions, ...")

@@ -149,6 +149,12 @@ WAY = click.option(
     show_default=True,
     help="By energies, by projection, or body by body with every reaction.",
 )
+LANGUAGE = click.option(
+    "--language",
+    default="",
+    metavar="NAME",
+    help="en, de, fr, es, or a .po file.  [default: the file's, else en]",
+)
 DURATION = partial(click.option, "--time", type=time_typed, metavar="TIME")
 TIME = DURATION(default=10.0, show_default=True, help='How long: 5 is in s, or "500 ms".')
 PAGE_TIME = DURATION(

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -23,6 +24,7 @@ from eomgen.cli_options import (
     FORCES,
     FORMAT,
     JSON,
+    LANGUAGE,
     MODEL,
     OF_PLOT,
     OF_TABLE,
@@ -49,6 +51,9 @@ from eomgen.cli_options import (
     with_values,
     words,
 )
+
+if TYPE_CHECKING:
+    from eomgen.documents import Document
 
 VERB = partial(click.command, cls=Verb)
 
@@ -395,6 +400,7 @@ def play_command(model: str, wants_json: bool, output: str, strict: bool, **opti
     "--steps", metavar="LIST", callback=words, help='Its steps: "positions,energies"; help lists those of the model.'
 )
 @WAY
+@LANGUAGE
 @click.option("--with", "with_", metavar="LIST", callback=words, help='Further sections: "linearize,statics".')
 @click.option("--without", metavar="LIST", callback=words, help='Sections that are left out: "motion,downloads".')
 @with_proof
@@ -417,11 +423,10 @@ def report_command(model: str, wants_json: bool, output: str | None, strict: boo
     with reading(model) as source:
         name = "" if model == "-" else Path(model).name
         text = source.data.decode()
-        numbers = options["variant"]
-        several = {"variants": tuple(numbers)} if isinstance(numbers, range) else {}
-        options |= {"variant": None} if several else {}
-        made = sheets_document if several else report_document
-        document = requested_document(made, source, options, output=output or "", origin=name, text=text, **several)
+        made: Callable[..., Document] = report_document
+        if isinstance(options["variant"], range):
+            made = partial(sheets_document, variants=tuple(options.pop("variant")))
+        document = requested_document(made, source, options, output=output or "", origin=name, text=text)
     return deliver(document, form_requested(wants_json, None), strict=strict)
 
 

@@ -21,6 +21,9 @@ from eomgen.documents.document import Document as Document
 # The document of a model, under its name, its remark and its source
 from eomgen.documents.document import document_of as document_of
 
+# The catalogue of the requested language, else of that of the model, for its documents
+from eomgen.documents.document import language_of as language_of
+
 # Lines of text that are of no model
 from eomgen.documents.document import lines_document as lines_document
 
@@ -130,6 +133,7 @@ from eomgen.documents.json_form import equations_payload as equations_payload
 
 # Texts of the equations of motion in the payload, the reactions left out
 from eomgen.documents.json_form import payload_texts as payload_texts
+from eomgen.documents.languages import Catalogue as Catalogue
 from eomgen.documents.latex import PREAMBLE as PREAMBLE
 from eomgen.documents.latex import Group as Group
 
@@ -366,6 +370,7 @@ from eomgen.documents.statements import Statement as Statement
 from eomgen.documents.statements import Step as Step
 
 # The table with these of its columns; None: with those in which something stands
+from eomgen.documents.statements import key_of as key_of
 from eomgen.documents.statements import narrow_grid as narrow_grid
 
 # A sentence of these pieces

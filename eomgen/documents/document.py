@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import field, replace
 from typing import Any
 
+from eomgen.documents.languages import OURS, Catalogue, catalogue
 from eomgen.documents.statements import Equation, Lines, Meaning, Quantity, Statement, Step, Table
 from eomgen.errors import Problem, UsageError
 from eomgen.frozen import Pickled, dataclass
@@ -46,6 +47,7 @@ class Document:
         parameters: the values of those that have one, exact constants.
         answer_code: the exit code that is an answer: 5 where that is no.
         proven_in_full: its proof is printed check by check, and not in one line.
+        language: the words in which it is printed.
         fragment: in LaTeX it is what one pastes into a document of one's own: "plain", "numbered"; "" for a whole file.
     """
 
@@ -68,14 +70,25 @@ class Document:
     parameters: Mapping[str, Any] = field(default_factory=dict)
     answer_code: int = 0
     proven_in_full: bool = False
+    language: Catalogue = OURS
     fragment: str = ""
+
+    @property
+    def source_words(self) -> str:
+        """The sentence that names its source; "" where there is none."""
+        return self.language.say(f"Source: {self.source}.") if self.source else ""
+
+    def said_in(self, language: Catalogue) -> Document:
+        """The document in another language: its words, its heads, the signs of its decimals."""
+        steps, notation = tuple(map(language.step, self.steps)), replace(self.notation, comma=language.comma)
+        return replace(self, steps=steps, failed=language.say(self.failed), language=language, notation=notation)
 
     @property
     def proof(self) -> str:
         """The proof as it is printed; "" where none was made."""
         if self.certificate is None:
             return ""
-        return str(self.certificate) if self.proven_in_full else self.certificate.brief
+        return str(self.certificate) if self.proven_in_full else self.language.say(self.certificate.brief)
 
     def __getstate__(self) -> dict[str, Any]:
         """State to be pickled: the entries take the place of the function that makes them."""
@@ -104,7 +117,7 @@ class Document:
     @property
     def distrust(self) -> str:
         """Sentence that the proof contradicts the result; "" if it does not."""
-        return DISTRUST if self.certificate is not None and self.certificate.ok is False else ""
+        return self.language.say(DISTRUST) if self.certificate is not None and self.certificate.ok is False else ""
 
     @property
     def wrong(self) -> str:
@@ -152,6 +165,24 @@ def document_of(model: Model, method: str, steps: tuple[Step, ...]) -> Document:
 def with_symbols(document: Document, symbols: Mapping[str, Symbol]) -> Document:
     """The document with symbols for names that are not the model's: of its reactions."""
     return replace(document, notation=document.notation.with_symbols(symbols))
+
+
+def own_words(model: Model) -> Iterator[str]:
+    """The words of a model's author, which no language changes: its names and remarks."""
+    tables = (model.parameters, model.coordinates, model.speeds, model.inputs, model.unknowns, model.outputs)
+    objects = (model.points, model.bodies, model.constraints, model.trusses, model.forces)
+    yield from (name for table in (*tables, *objects) for name in table)
+    parts = (part for table in (*tables, model.bodies) for part in table.values())
+    yield from filter(None, (model.name, model.about, model.source, *(part.about for part in parts)))
+
+
+def language_of(model: Model, requested: str = "") -> Catalogue:
+    """The catalogue of the requested language, else of that of the model, for its documents.
+
+    Raises:
+        UsageError: there are no words in that language.
+    """
+    return catalogue(requested or model.language or OURS.language).beside(own_words(model))
 
 
 def plain_document(

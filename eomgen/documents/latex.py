@@ -28,6 +28,7 @@ from eomgen.documents.statements import (
     Side,
     Statement,
     Table,
+    key_of,
     parts_of,
     prose,
 )
@@ -58,6 +59,7 @@ SIDE = 8
 SHORT = 24  # rows of a table that stays on one page
 _STATEMENTS = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 ALIGNED, ALIGNED_END = "\\[\\begin{aligned}\n", "\n\\end{aligned}\\]"
+_DECIMAL = re.compile(r"(?<![\w.])(\d+)\.(\d+)(?![\w.])")
 LINE_END = r" \\"
 BLOCK = 12  # rows of one display; a page ends between displays
 LETTERS = {
@@ -133,7 +135,7 @@ def render(document: Document) -> str:
     if document.about:
         lines.append(latex_escaped(document.about) + "\n")
     if document.source:
-        lines.append(f"Source: {latex_escaped(document.source)}.\n")
+        lines.append(f"{latex_escaped(document.source_words)}\n")
     for step in document.steps:
         lines += [rf"\subsection*{{{latex_escaped(step.title)}}}"] if step.title else []
         lines += latex_blocks(setter, step.statements)
@@ -203,7 +205,12 @@ def grouped(statements: Sequence[Statement]) -> list[Group]:
 
 def display_blocks(setter: Setter, formulas: Sequence[Formula]) -> list[str]:
     """The formulas in aligned blocks of a few rows each."""
-    return setter.displays(_sides(setter, formulas), BLOCK)
+    return [_with_decimals(setter, block) for block in setter.displays(_sides(setter, formulas), BLOCK)]
+
+
+def _with_decimals(setter: Setter, tex: str) -> str:
+    """A formula with the decimal sign of its document; braces keep the comma from being one between two numbers."""
+    return _DECIMAL.sub(r"\1{,}\2", tex) if setter.notation.comma else tex
 
 
 def _sides(setter: Setter, formulas: Sequence[Formula]) -> list[list[Set | Scalar]]:
@@ -275,7 +282,7 @@ def piece_latex(setter: Setter, piece: Piece, escape: Callable[[str], str]) -> s
 
 def side_latex(setter: Setter, side: Side) -> str:
     """One side of a formula."""
-    return _whole(setter, side).tex
+    return _with_decimals(setter, _whole(setter, side).tex)
 
 
 def _side(setter: Setter, side: Side) -> Set | Scalar:
@@ -349,10 +356,12 @@ def unit_latex(unit: str) -> str:
 
 def value_latex(value: str) -> str:
     """A value: -0.5 and 2.2e-06 as numbers, anything else as it is."""
-    number = re.fullmatch(r"(-?\d+(?:\.\d+)?)(?:e([-+]\d+))?", value)
+    number = re.fullmatch(r"(-?\d+(?:[.,]\d+)?)(?:e([-+]\d+))?", value)
     if number is None:
         return latex_escaped(value)
-    return f"${number[1]}" + (rf" \cdot 10^{{{int(number[2])}}}$" if number[2] else "$")
+    scale = rf" \cdot 10^{{{int(number[2])}}}" if number[2] else ""
+    digits = number[1].replace(",", "{,}")
+    return f"${digits}{scale}$"
 
 
 def _ruled(alignment: str, head: str, rows: list[str], long: bool) -> str:
@@ -375,8 +384,8 @@ def _grid(setter: Setter, table: Grid | Table, long: bool = True) -> str:
     ]
     room = WORDS if sum(longest) <= LINE else NARROW
     wide = [f"p{{{room}mm}}" if length > room else "l" for length in longest]
-    alignment = wide if table is grid else [MEANING if head == "meaning" else "l" for head in grid.head]
-    units = [head == "unit" for head in grid.head]
+    alignment = wide if table is grid else [MEANING if key_of(head) == "meaning" else "l" for head in grid.head]
+    units = [key_of(head) == "unit" for head in grid.head]
     head = _cells(setter, grid.head, [True] * len(grid.head))
     return _ruled("".join(alignment), head, [_cells(setter, row, units) for row in grid.rows], long)
 

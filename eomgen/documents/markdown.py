@@ -16,7 +16,19 @@ from eomgen.documents.latex import (
     side_latex,
     with_listings_typeset,
 )
-from eomgen.documents.statements import Cell, Code, Found, Grid, Lines, Piece, Prose, Quantity, Statement, unit_text
+from eomgen.documents.statements import (
+    Cell,
+    Code,
+    Found,
+    Grid,
+    Lines,
+    Piece,
+    Prose,
+    Quantity,
+    Statement,
+    key_of,
+    unit_text,
+)
 from eomgen.model import Model
 from eomgen.symbolic.expression import Graph
 from eomgen.symbolic.print import Notation, Setter
@@ -33,7 +45,7 @@ def render(document: Document) -> str:
     blocks = [f"**{document.distrust}**"] if document.distrust else []
     blocks.append(f"# {markdown_escaped(document.title)}")
     blocks += [markdown_escaped(text) for text in (document.about,) if text]
-    blocks += [f"Source: {markdown_escaped(document.source)}."] if document.source else []
+    blocks += [markdown_escaped(document.source_words)] if document.source else []
     for step in document.steps:
         blocks += [f"## {markdown_escaped(step.title)}"] if step.title else []
         blocks += markdown_blocks(setter, step.statements)
@@ -100,7 +112,7 @@ def _piece(setter: Setter, piece: Piece) -> str:
 def _grid(setter: Setter, grid: Grid) -> str:
     """A table of words and formulas; a bar inside a formula would end its cell."""
     plain = [False] * len(grid.head)
-    units = [head == "unit" for head in grid.head]
+    units = [key_of(head) == "unit" for head in grid.head]
     lines = [_cells(setter, grid.head, plain), "|" + "---|" * len(grid.head)]
     return "\n".join([*lines, *(_cells(setter, row, units) for row in grid.rows)])
 

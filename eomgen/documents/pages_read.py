@@ -101,8 +101,8 @@ def latex_page(text: str) -> Iterator[PageBlock]:
         elif line == r"\[\begin{aligned}":
             yield from displayed("\n".join(_until(lines, r"\end{aligned}\]")))
         elif line == r"\begin{align}":
-            rows = (row.replace(r"\notag ", "") for row in _until(lines, r"\end{align}"))
-            yield from displayed("\n".join(rows))
+            numbered = (row.replace(r"\notag ", "") for row in _until(lines, r"\end{align}"))
+            yield from displayed("\n".join(numbered))
         elif line == r"\begin{verbatim}":
             yield PageBlock("lines", lines=tuple(_until(lines, r"\end{verbatim}")))
         elif kind := _TABLE.match(line):
@@ -289,6 +289,7 @@ _ENDS = frozenset(("+", "-", ")", "}", ",", "&", r"\\", r"\end", "<", r"\leq", "
 
 def tokens_of(tex: str) -> Tokens:
     """The commands, numbers and letters of a formula; an index in braces always, L_{x} for L_x."""
+    tex = tex.replace("{,}", ".")  # a decimal comma
     return tuple("|" if x == r"\vert" else x for x in _TOKEN.findall(_LONE.sub(r"\1{\2}", tex)))
 
 

@@ -70,8 +70,8 @@ HOW = "a reader of its own, 50 digits"
 SHOWN = 60  # characters of a quoted text
 TRIES = 12  # random states, for one at which a formula has a value
 LETTERED = frozenset("sin cos tan arcsin arccos arctan sinh cosh tanh ln min max det".split())
-_SCALED = re.compile(r"(-?\d+(?:\.\d+)?)(?:·10(-?\d+))?")  # 5 · 10^-5
-_NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+_SCALED = re.compile(r"(-?\d+(?:[.,]\d+)?)(?:·10(-?\d+))?")  # 5 · 10^-5
+_NUMBER = re.compile(r"-?\d+(?:[.,]\d+)?(?:e[-+]?\d+)?")
 
 
 class Unlike(Exception):
@@ -121,7 +121,7 @@ def _wanted(document: Document, form: str) -> Iterator[Wanted]:
     if document.about:
         yield Wanted("words", (document.about,))
     if document.source:
-        yield Wanted("words", (f"Source: {document.source}.",))
+        yield Wanted("words", (document.source_words,))
     for step in document.steps:
         if step.title and titled:
             yield Wanted("heading", (step.title,))
@@ -261,9 +261,9 @@ class PageComparison:
         if not isinstance(cell, str):
             self._pieces((cell,), line, where)
         elif _NUMBER.fullmatch(cell) and len(line) == 1 and line[0].tex:
-            self._number(line[0].tex, float(cell), where)
+            self._number(line[0].tex, _float(cell), where)
         elif _NUMBER.fullmatch(cell) and (said := _SCALED.fullmatch("".join(part.character for part in line))):
-            if wrong := differing(float(f"{said[1]}e{said[2] or 0}"), float(cell)):
+            if wrong := differing(_float(f"{said[1]}e{said[2] or 0}"), _float(cell)):
                 raise Unlike(f"{where}: {wrong}")
         else:
             self._pieces((cell,), line, where)
@@ -566,6 +566,11 @@ def _said(piece: Any) -> str:
     if isinstance(piece, Quantity):
         return piece.exact or piece.number
     return str(piece) if isinstance(piece, str) else getattr(piece, "letter", type(piece).__name__.lower())
+
+
+def _float(digits: str) -> float:
+    """A number of a page, with a decimal point or comma."""
+    return float(digits.replace(",", "."))
 
 
 def number_said(found: Quantity) -> str:

@@ -171,6 +171,18 @@ class Grid:
     rows: tuple[tuple[Cell, ...], ...]
 
 
+class Head(str):
+    """The head of a column in another language; `key` is what it is called in ours."""
+
+    __slots__ = ("key",)
+    key: str
+
+
+def key_of(head: Cell) -> Cell:
+    """The head of a column as this program calls it, in whatever language it stands."""
+    return getattr(head, "key", head)
+
+
 def narrow_grid(head: Sequence[Cell], rows: Sequence[tuple[Cell, ...]], kept: Sequence[int] | None = None) -> Grid:
     """The table with these of its columns; None: with those in which something stands."""
     if kept is None:

@@ -27,6 +27,7 @@ from eomgen.documents.statements import (
     Rate,
     Side,
     Statement,
+    key_of,
     unit_text,
 )
 from eomgen.symbolic.expression import Node, Scalar
@@ -58,8 +59,7 @@ def _headed(title: str, rule: str) -> list[str]:
 
 
 def _remarks(document: Document) -> list[str]:
-    source = f"Source: {document.source}." if document.source else ""
-    return [line for text in (document.about, source) if text for line in textwrap.wrap(text, WIDTH)]
+    return [line for text in (document.about, document.source_words) if text for line in textwrap.wrap(text, WIDTH)]
 
 
 def statement_lines(statement: Statement) -> list[str]:
@@ -81,7 +81,8 @@ def statement_lines(statement: Statement) -> list[str]:
     if isinstance(statement, Grid):
         return _column_lines(statement, len(statement.head) - 1, LAST)
     grid = statement.grid
-    return _column_lines(grid, grid.head.index("meaning") if "meaning" in grid.head else 0, MEANING)
+    keys = list(map(key_of, grid.head))
+    return _column_lines(grid, keys.index("meaning") if "meaning" in keys else 0, MEANING)
 
 
 def _matrix_lines(lead: str, matrix: Matrix) -> list[str]:
@@ -182,7 +183,7 @@ def cell_text(cell: Cell) -> str:
     return cell if isinstance(cell, str) else side_text(cell)
 
 
-def _cell(head: str, cell: Cell) -> str:
+def _cell(head: Cell, cell: Cell) -> str:
     """A cell below its head."""
     return unit_text(cell_text(cell)) if head == "unit" else cell_text(cell)
 
@@ -193,8 +194,8 @@ def _column_lines(grid: Grid, wrapped: int, least: int) -> list[str]:
     Args:
         least: the width that is left to that column.
     """
-    heads = tuple(map(cell_text, grid.head))
-    rows = [heads, *(tuple(map(_cell, heads, row)) for row in grid.rows)]
+    heads, keys = tuple(map(cell_text, grid.head)), tuple(map(key_of, grid.head))
+    rows = [heads, *(tuple(map(_cell, keys, row)) for row in grid.rows)]
     if not any(rows):
         return []
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]

@@ -173,7 +173,7 @@ class TextRead:
         """
         if document.has_heads:
             self._heading(document.title, "=")
-            for text in (document.about, f"Source: {document.source}." if document.source else ""):
+            for text in (document.about, document.source_words):
                 self._says(text)
         count = 0
         for number, step in enumerate(document.steps, start=1):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import html
 import tempfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Container, Mapping
 from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.documents import Document, Prose, Step
+from eomgen.documents import Catalogue, Document, Prose, Step
 from eomgen.frozen import Pickled, dataclass
 from eomgen.model import Table
 from eomgen.page.markup import Html
@@ -145,6 +145,7 @@ class ReportSection:
         live: gives a player as complete HTML; None where nothing moves.
         computed: the columns of the motion that it computes.
         remark: the reason why it is empty, or a further remark.
+        heading: its title in another language; "" for ours.
     """
 
     key: str
@@ -154,6 +155,7 @@ class ReportSection:
     live: Callable[[], Html] | None = None
     computed: frozenset[str] = frozenset()
     remark: str = ""
+    heading: str = ""
 
     def __getstate__(self) -> dict[str, Any]:
         """State to be pickled: the finished player takes the place of the function that makes it."""
@@ -162,7 +164,30 @@ class ReportSection:
 
     @property
     def title(self) -> str:
-        return SECTIONS[self.key]
+        return self.heading or SECTIONS[self.key]
+
+    def said_in(self, language: Catalogue, kept: Container[str]) -> ReportSection:
+        """The section in another language.
+
+        Args:
+            kept: keys of the steps that are a user's own words.
+        """
+        drawings = (
+            replace(
+                each,
+                caption=language.say(each.caption),
+                legend=tuple(replace(curve, name=language.prose(curve.name)) for curve in each.legend),
+            )
+            for each in self.drawings
+        )
+        return replace(
+            self,
+            heading=language.say(self.title),
+            steps=tuple(step if step.key in kept else language.step(step) for step in self.steps),
+            drawings=tuple(drawings),
+            attachments=tuple(replace(each, about=language.say(each.about)) for each in self.attachments),
+            remark=language.say(self.remark),
+        )
 
 
 @dataclass(frozen=True)

@@ -36,7 +36,7 @@ def tex_files(report: Report, name: str) -> Mapping[str, str | bytes]:
     lines.append(rf"{{\LARGE\bfseries {latex_escaped(head.title)}\par}}\medskip")
     lines += [rf"\textbf{{{latex_escaped(head.wrong)}}}" + "\n"] if head.wrong else []
     lines += [latex_escaped(head.about) + "\n"] if head.about else []
-    lines += [f"Source: {latex_escaped(head.source)}.\n"] if head.source else []
+    lines += [f"{latex_escaped(head.source_words)}\n"] if head.source else []
     for section in report.printed:
         lines += _section(setter, section, report, pictures)
     return {name: "\n".join([*lines, r"\end{document}"]) + "\n", **pictures.drawn}
@@ -52,8 +52,9 @@ def _section(setter: Setter, section: ReportSection, report: Report, pictures: P
     for drawing in section.drawings:
         lines += _picture(drawing, pictures.name(drawing))
     if section.key == "certificate" and report.certificate is not None:
+        say = report.head.language.say
         rows = [
-            rf"\item[{MARKS[check.status]}] {latex_escaped(check.name)} [{latex_escaped(check.how)}]"
+            rf"\item[{MARKS[check.status]}] {latex_escaped(say(check.name))} [{latex_escaped(say(check.how))}]"
             + (f": {latex_escaped(check.detail)}" if check.detail else "")
             for check in report.certificate.checks
         ]
@@ -94,7 +95,7 @@ def markdown_head(report: Report) -> list[str]:
     blocks = [f"# {markdown_escaped(head.title)}"]
     blocks += [f"**{markdown_escaped(head.wrong)}**"] if head.wrong else []
     blocks += [markdown_escaped(head.about)] if head.about else []
-    return [*blocks, f"Source: {markdown_escaped(head.source)}."] if head.source else blocks
+    return [*blocks, markdown_escaped(head.source_words)] if head.source else blocks
 
 
 def section_markdown(setter: Setter, section: ReportSection, report: Report) -> list[str]:

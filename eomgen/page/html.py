@@ -21,6 +21,7 @@ from eomgen.documents import (
     display_blocks,
     formula_text,
     grouped,
+    key_of,
     piece_latex,
     setter_of,
     side_latex,
@@ -49,7 +50,7 @@ from eomgen.version import __version__
 
 LARGEST = 1.5  # pixels of a point of a picture
 DIGITS = 9  # of the numbers of a table that a page offers: as many as a run is sure of
-_NUMBER = re.compile(r"(-?)(\d+(?:\.\d+)?)(?:e([-+]\d+))?")
+_NUMBER = re.compile(r"(-?)(\d+(?:[.,]\d+)?)(?:e([-+]\d+))?")
 _TEX = r'<annotation encoding="application/x-tex">(.*?)</annotation>'
 _DISPLAY = re.compile(rf'(<math display="block">.*?{_TEX}.*?</math>)', re.DOTALL)
 _DRAWN = re.compile(r"(?<=<figure )([^<]*<svg [^>]*)>((?:(?!</svg>).)*)</svg>", re.DOTALL)
@@ -80,7 +81,8 @@ def html_page(report: Report) -> str:
         element("title", title),
         style(page_style()),
     )
-    return f"<!doctype html>\n{element('html', element('head', *head), element('body', *body), lang='en')}\n"
+    page = element("html", element("head", *head), element("body", *body), lang=report.head.language.language)
+    return f"<!doctype html>\n{page}\n"
 
 
 def _set_apart(shown: Html) -> tuple[Html, dict[str, list[str]]]:
@@ -112,19 +114,25 @@ def _head(report: Report) -> list[Html]:
     head, certificate = report.head, report.certificate
     parts = [element("h1", head.title)]
     parts += [element("p", head.about, class_="about")] if head.about else []
-    parts += [element("p", "Source: ", head.source, ".", class_="source")] if head.source else []
+    parts += [element("p", head.source_words, class_="source")] if head.source else []
     parts += [element("p", head.wrong, class_="wrong", role="alert")] if head.wrong else []
     links = [element("li", element("a", section.title, href=f"#{section.key}")) for section in report.sections]
-    parts.append(element("nav", element("ul", *links), aria_label="Sections"))
+    parts.append(element("nav", element("ul", *links), aria_label=head.language.say("Sections")))
     if certificate is not None and certificate.ok:
         held = sum(check.status == "holds" for check in certificate.checks)
-        parts.insert(1, element("p", element("a", f"✓ proven by {held} checks", href="#certificate"), class_="proven"))
+        parts.insert(
+            1,
+            element(
+                "p", element("a", head.language.say(f"✓ proven by {held} checks"), href="#certificate"), class_="proven"
+            ),
+        )
     return parts
 
 
 def _made(report: Report) -> list[str]:
-    origin = [" from ", element("code", report.origin)] if report.origin else []
-    return [f"Made by eomgen {__version__}", *origin, ". This page needs no network."]
+    origin = f" from {report.origin}" if report.origin else ""
+    say = report.head.language.say
+    return [say(f"Made by eomgen {__version__}{origin}."), " ", say("This page needs no network.")]
 
 
 def element_of(setter: Setter, section: ReportSection, report: Report) -> Html:
@@ -137,7 +145,7 @@ def element_of(setter: Setter, section: ReportSection, report: Report) -> Html:
     inside += [_live(section.live)] if section.live else []
     inside += [_attachments(section.attachments, _computed(report))] if section.attachments else []
     if section.key == "certificate" and report.certificate is not None:
-        inside.append(_certificate(report.certificate))
+        inside.append(_certificate(report.certificate, report.head.language.say))
     return element("section", *inside, id=section.key)
 
 
@@ -200,7 +208,7 @@ def piece_html(setter: Setter, piece: Piece) -> Html:
 
 
 def _table(setter: Setter, grid: Grid) -> Html:
-    units = [head == "unit" for head in grid.head]
+    units = [key_of(head) == "unit" for head in grid.head]
     numbers = [
         bool(grid.rows)
         and all(isinstance(row[k], str) and _NUMBER.match(str(row[k])) for row in grid.rows if row[k] != "")
@@ -300,15 +308,15 @@ def _computed(report: Report) -> frozenset[str]:
     return frozenset()
 
 
-def _certificate(certificate: Certificate) -> Html:
+def _certificate(certificate: Certificate, say: Callable[[str], str]) -> Html:
     rows = [
         element(
             "tr",
             element("td", SIGNS[check.status], class_=check.status),
-            element("td", check.name, f": {check.detail}" if check.detail else ""),
-            element("td", check.how),
+            element("td", say(check.name), f": {check.detail}" if check.detail else ""),
+            element("td", say(check.how)),
         )
         for check in certificate.checks
     ]
-    head = element("tr", *(element("th", word, scope="col") for word in ("", "what was checked", "how")))
+    head = element("tr", *(element("th", word, scope="col") for word in ("", say("what was checked"), say("how"))))
     return _scrolled(element("table", element("thead", head), element("tbody", *rows)), "certificate")

@@ -16,6 +16,7 @@ from eomgen.documents import (
     Prose,
     display_blocks,
     grouped,
+    key_of,
     piece_latex,
     setter_of,
     side_latex,
@@ -67,16 +68,17 @@ def typst_text(report: Report) -> str:
     lines = [PREAMBLE, f"#set document(title: {string(head.title)}, date: none)"]
     lines.append(f"#text(size: 19pt, weight: 700, {string(head.title)})")
     lines += [f"#par(text(size: 11.5pt, {string(head.about)}))"] if head.about else []
-    lines += [f"#par(text(size: 9pt, fill: luma(80), {string(f'Source: {head.source}.')}))"] if head.source else []
+    lines += [f"#par(text(size: 9pt, fill: luma(80), {string(head.source_words)}))"] if head.source else []
     lines += [f"#par(text(fill: rgb(160, 30, 20), weight: 700, {string(head.wrong)}))"] if head.wrong else []
     for section in report.printed:
-        lines += _section(setter, section, report.certificate)
+        lines += _section(setter, section, report)
     origin = f" from {report.origin}" if report.origin else ""
-    lines.append(f"#v(1em)\n#text(size: 8.5pt, fill: luma(80), {string(f'Made by eomgen {__version__}{origin}.')})")
+    made = head.language.say(f"Made by eomgen {__version__}{origin}.")
+    lines.append(f"#v(1em)\n#text(size: 8.5pt, fill: luma(80), {string(made)})")
     return "\n\n".join(lines) + "\n"
 
 
-def _section(setter: Setter, section: ReportSection, certificate: Certificate | None) -> list[str]:
+def _section(setter: Setter, section: ReportSection, report: Report) -> list[str]:
     lines = [f"#heading(level: 1, {string(section.title)})"]
     lines += [f"#emph({string(section.remark)})"] if section.remark else []
     for step in section.steps:
@@ -88,7 +90,8 @@ def _section(setter: Setter, section: ReportSection, certificate: Certificate | 
             lines += [_kept_with_next(parts[0])] if kept else parts
         lines += [f"#rect(width: 100%, height: {step.room}cm, stroke: 0.4pt + luma(190))"] if step.room else []
     lines += [_drawing(setter, drawing) for drawing in section.drawings]
-    return [*lines, _certificate(certificate)] if section.key == "certificate" and certificate is not None else lines
+    proof = report.certificate if section.key == "certificate" else None
+    return [*lines, _certificate(proof, report.head.language.say)] if proof is not None else lines
 
 
 def _group(setter: Setter, group: Group) -> list[str]:
@@ -128,7 +131,7 @@ def _table(setter: Setter, grid: Grid) -> str:
     ]
     room = sum(longest) > 90  # then long columns share what the others leave
     columns = ", ".join("1fr" if room and each > WORDY else "auto" for each in longest)
-    units = [head == "unit" for head in grid.head]
+    units = [key_of(head) == "unit" for head in grid.head]
     head = "".join(f"{_cell(setter, cell, False)}, " for cell in grid.head)
     rows = "\n".join("".join(f"{_cell(setter, c, u)}, " for c, u in zip(row, units, strict=True)) for row in grid.rows)
     line = "table.hline(stroke: 0.7pt)"
@@ -140,10 +143,11 @@ def _cell(setter: Setter, cell: Cell, is_unit: bool) -> str:
         return f"[${typst_math(side_latex(setter, cell))}$]"
     if is_unit:
         return f"[{_unit(cell)}]"
-    number = re.fullmatch(r"(-?)(\d+(?:\.\d+)?)(?:e([-+]\d+))?", cell)
+    number = re.fullmatch(r"(-?)(\d+(?:[.,]\d+)?)(?:e([-+]\d+))?", cell)
     if number is None:
         return f"[#{string(cell)}]"
-    return f"[${number[1]}{number[2]}" + (f" dot.op 10^({int(number[3])})$]" if number[3] else "$]")
+    digits = number[2].replace(",", '","')
+    return f"[${number[1]}{digits}" + (f" dot.op 10^({int(number[3])})$]" if number[3] else "$]")
 
 
 def _unit(unit: str) -> str:
@@ -182,14 +186,14 @@ def svg_file(drawing: ReportFigure) -> str:
     ).replace("xmlns-xlink", "xmlns:xlink")
 
 
-def _certificate(certificate: Certificate) -> str:
+def _certificate(certificate: Certificate, say: Callable[[str], str]) -> str:
     rows = [
         f"[#{string(SIGNS[check.status])}], "
-        f"[#{string(check.name + (f': {check.detail}' if check.detail else ''))}], [#{string(check.how)}],"
+        f"[#{string(say(check.name) + (f': {check.detail}' if check.detail else ''))}], [#{string(say(check.how))}],"
         for check in certificate.checks
     ]
     line = "table.hline(stroke: 0.7pt)"
-    head = "table.header([], [what was checked], [how], table.hline(stroke: 0.4pt))"
+    head = f"table.header([], [{say('what was checked')}], [{say('how')}], table.hline(stroke: 0.4pt))"
     body = "\n".join(rows)
     return (
         f"#text(size: 9pt, table(columns: (auto, 1.6fr, 1fr), column-gutter: 0.9em, {line}, {head},\n{body}\n{line}))"
@@ -272,6 +276,9 @@ class _Reader:
     def _one(self, token: str) -> str:
         if token in "_^" and len(token) == 1:
             return f"{token}({self._argument()})"
+        if self._tex.startswith("{,}", self._place - 1) and token == "{":
+            self._place += 2
+            return '","'  # a decimal comma
         if token == "{":
             return self.until("}")
         if token == "&":

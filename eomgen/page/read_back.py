@@ -87,9 +87,9 @@ def _wanted(report: Report, form: str) -> Iterator[Wanted]:
     yield Wanted("heading", (head.title,))
     if form == ".html" and report.certificate is not None and report.certificate.ok:
         held = sum(check.ok is True for check in report.certificate.checks)
-        yield Wanted("words", (f"✓ proven by {held} checks",))
+        yield Wanted("words", (head.language.say(f"✓ proven by {held} checks"),))
     about = [Wanted("words", (head.about,))] if head.about else []
-    source = [Wanted("words", (f"Source: {head.source}.",))] if head.source else []
+    source = [Wanted("words", (head.source_words,))] if head.source else []
     wrong = [Wanted("words", (head.wrong,))] if head.wrong else []
     yield from (*about, *source, *wrong) if form == ".html" else (*wrong, *about, *source)
     for section in report.sections if form == ".html" else report.printed:
@@ -114,14 +114,14 @@ def _of_section(section: ReportSection, report: Report, form: str) -> Iterator[W
 
 def _of_proof(report: Report, form: str) -> Iterator[Wanted]:
     assert report.certificate is not None
-    checks = report.certificate.checks
+    checks, say = report.certificate.checks, report.head.language.say
     if form == ".html":
         signs = {"holds": "✓", "fails": "✗", "unchecked": "?"}
-        rows = [(signs[c.status], f"{c.name}: {c.detail}" if c.detail else c.name, c.how) for c in checks]
-        yield Wanted("table", rows=(("", "what was checked", "how"), *rows))
+        rows = [(signs[c.status], say(c.name) + (f": {c.detail}" if c.detail else ""), say(c.how)) for c in checks]
+        yield Wanted("table", rows=(("", say("what was checked"), say("how")), *rows))
     elif form == ".tex":
         for c in checks:
-            yield Wanted("words", (f"{c.name} [{c.how}]" + (f": {c.detail}" if c.detail else ""),))
+            yield Wanted("words", (f"{say(c.name)} [{say(c.how)}]" + (f": {c.detail}" if c.detail else ""),))
     else:
         yield Wanted("lines", lines=tuple(str(report.certificate).split("\n")))
 

@@ -22,6 +22,7 @@ from eomgen.documents import (
     document_of,
     drawing_at_rest,
     given_step,
+    language_of,
     lines_document,
     nearest_name,
     plain_document,
@@ -87,11 +88,13 @@ class Sheet:
         audience: one of AUDIENCES; "" for a whole report.
         steps: keys of the steps that stand in it; () for all.
         method: of the derivation, as `derive` takes it.
+        language: of all that it says; "" for that of the model.
     """
 
     audience: str = ""
     steps: tuple[str, ...] = ()
     method: str = "lagrange"
+    language: str = ""
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -222,6 +225,7 @@ def report(
     for_: str = "",
     steps: Sequence[str] = (),
     method: str = "lagrange",
+    language: str = "",
 ) -> Report:
     """A model and the results for it, as a page (.html), a paper (.pdf, .tex), text (.md) or an executed notebook.
 
@@ -234,6 +238,7 @@ def report(
         for_: "problem" for a sheet without any answer, "worksheet" for one with room to write in, "solution".
         steps: keys of the steps of its sections that stand in it; () for all.
         method: of the derivation, as `derive` takes it.
+        language: of all that it says, "de", "fr", "es", or a file .po; "" for that of the model.
     Raises:
         UsageError: no format has that ending; there is no such section, step or reader.
         ToolMissing: the program that runs notebooks is not installed.
@@ -243,7 +248,7 @@ def report(
     source = bytes_at(str(model)).decode() if is_file else ""
     origin = Path(str(model)).name if is_file else ""
     lasts = None if time is None else seconds(time)
-    sheet = Sheet(for_, tuple(steps), method)
+    sheet = Sheet(for_, tuple(steps), method, language)
     subject = Subject(model_to_study(model, parameters, start), lasts, certify, origin, source, sheet)
     found = report_of(subject, with_, without)
     if form is not None and path is not None:
@@ -257,7 +262,7 @@ def _read_back(subject: Subject, found: Report, form: str, name: str) -> tuple[R
     texts = written_as(found, form, name)
     if found.certificate is None:
         return found, texts
-    run = subject.run if "followed" in vars(subject) else None
+    run = subject.run if "followed" in vars(subject) and not found.head.language.messages else None
     checks = [*report_read_back(found, texts, form, run)]
     checks += [] if form != ".html" or run is None else _player_read_back(subject, found)
     checks += [] if run is None else _figure_read_back(subject, run)
@@ -309,12 +314,13 @@ def report_document(
     for_: str = "",
     steps: Sequence[str] = (),
     method: str = "lagrange",
+    language: str = "",
 ) -> Document:
     """Writes the report; the document names its files, or its steps where these are requested."""
-    sheet = Sheet(for_, () if STEPS_LISTED in steps else tuple(steps), method)
+    sheet = Sheet(for_, () if STEPS_LISTED in steps else tuple(steps), method, language)
     if STEPS_LISTED in steps:
-        found = step_titles(Subject(model, time, False, origin, text, replace(sheet, audience=SOLUTION)))
-        return lines_document(lambda: {"steps": found}, *(f"{key:<16}{title}" for key, title in found.items()))
+        titles = step_titles(Subject(model, time, False, origin, text, replace(sheet, audience=SOLUTION)))
+        return lines_document(lambda: {"steps": titles}, *(f"{key:<16}{title}" for key, title in titles.items()))
     form = form_of(output)
     subject = Subject(model, time, certify, origin, text, sheet)
     found, texts = _read_back(subject, report_of(subject, with_, without), form, Path(output).name)
@@ -382,7 +388,8 @@ def report_of(subject: Subject, with_: Sequence[str] = (), without: Sequence[str
     made = [_made(subject, key, key in with_) for key in keys]
     sections = tuple(section for section in made if section is not None)
     if sheet.is_open:
-        return Report(replace(document_of(model, "", ()), about="", source=""), sections, is_open=True)
+        open_ = Report(replace(document_of(model, "", ()), about="", source=""), sections, is_open=True)
+        return in_language(open_, subject)
     _refuse_unknown_steps(subject)
     proofs: dict[str, Certificate | None] = {key: each.certificate for key, each in subject.documents.items()}
     if "followed" in vars(subject):
@@ -396,7 +403,24 @@ def report_of(subject: Subject, with_: Sequence[str] = (), without: Sequence[str
     values = replaced(subject)
     lasted = float(subject.run.t[-1]) if "followed" in vars(subject) and len(subject.run.t) else PAGE_TIME
     lasted = subject.time or lasted
-    return Report(proven(head, joint_proof(proofs)), sections, subject.origin, subject.source, values, lasted)
+    whole = Report(proven(head, joint_proof(proofs)), sections, subject.origin, subject.source, values, lasted)
+    return in_language(whole, subject)
+
+
+def in_language(report: Report, subject: Subject) -> Report:
+    """The report in the language that is requested, else in that of the model; the user's own words stay as they are.
+
+    Raises:
+        UsageError: there are no words in that language.
+    """
+    model = subject.model
+    language = language_of(model, subject.sheet.language)
+    if not language.messages:
+        return report
+    kept = ("statement", *(f"question_{k}" for k in range(1, len(model.questions or ()) + 1)))
+    head = report.head.said_in(language)
+    sections = tuple(section.said_in(language, kept) for section in report.sections)
+    return replace(report, head=replace(head, title=language.say(head.title)), sections=sections)
 
 
 def step_titles(subject: Subject) -> dict[str, str]:
@@ -440,8 +464,8 @@ def _other(before: Mapping[str, Any], after: Mapping[str, Any], field: str) -> d
 def fitting(subject: Subject) -> tuple[str, ...]:
     """The sections that fit a model, for the readers of the sheet."""
     model, sheet = subject.model, subject.sheet
-    told = ("statement",) if model.text else ()
-    told += ("questions",) if model.questions or (sheet.audience and model.outputs) else ()
+    asked = bool(model.questions or (sheet.audience and model.outputs))
+    told = [*(["statement"] if model.text else []), *(["questions"] if asked else [])]
     if sheet.is_open:
         return ("figure", "data", *told)
     main, _ = subject.main
@@ -491,8 +515,8 @@ def _steps(key: str) -> Callable[[Subject], ReportSection]:
     """Function that makes the section of a verb, without the steps that have sections of their own."""
 
     def made(subject: Subject) -> ReportSection:
-        own = ("assumptions", "data") if subject.sheet.audience else SETTING
-        own += ("reactions",) if key == subject.main[0] else ()
+        own = [*(("assumptions", "data") if subject.sheet.audience else SETTING)]
+        own += ["reactions"] if key == subject.main[0] else []
         steps = subject.sheet.chosen(step for step in subject.document(key).steps if step.key not in own)
         return ReportSection(key, steps, _pictures(subject, key))
 

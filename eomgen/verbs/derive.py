@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from eomgen import pipeline
-from eomgen.documents import Document, Grid, Step, fragment_of, proven, with_constraints_closed
+from eomgen.documents import Document, Grid, Step, fragment_of, language_of, proven, with_constraints_closed
 from eomgen.equations import Equations
 from eomgen.model import Model
 from eomgen.proof import Certificate
@@ -26,6 +26,7 @@ def derive_document(
     section: str | None = None,
     fragment: bool = False,
     numbered: bool = False,
+    language: str = "",
 ) -> Document:
     """The derivation, and its certificate.
 
@@ -34,6 +35,7 @@ def derive_document(
         units: those of names, equations, reactions and outputs too.
         diff: the file of another model: the differences from it are reported instead.
         data: the texts for machines are proven, too.
+        language: of its words; "" for that of the model.
         section, fragment, numbered: of it only that section; as a part of another document.
     """
     if diff is not None:
@@ -44,7 +46,7 @@ def derive_document(
     document = equations.written(full=full)
     document = _with_units(equations, document) if units else document
     document = with_constraints_closed(document, equations.system)
-    document = fragment_of(document, section, fragment, numbered)
+    document = fragment_of(document, section, fragment, numbered).said_in(language_of(model, language))
     return equations.proven(document, data=data) if certify else proven(document, None)
 
 

@@ -459,10 +459,12 @@ class Notation:
     Args:
         symbols: the symbols that are declared, by name without primes.
         indices: the names of bodies and constraints in an index, where they declare one.
+        comma: numbers have a decimal comma.
     """
 
     symbols: Mapping[str, Symbol] = field(default_factory=dict)
     indices: Mapping[str, str] = field(default_factory=dict)
+    comma: bool = False
 
     def with_symbols(self, symbols: Mapping[str, Symbol]) -> Notation:
         """The notation with further symbols; the model's own take precedence."""
