@@ -19,6 +19,7 @@ from eomgen.documents.languages import PLACE, Catalogue, catalogue, languages, r
 from eomgen.documents.statements import Formula, Grid, Lines, Prose, Step, Table
 from eomgen.documents.text import formula_text
 from eomgen.page.report import report
+from eomgen.symbolic.expression import Graph
 
 pytestmark = pytest.mark.slow
 
@@ -133,3 +134,12 @@ def test_catalogues_are_files_of_gettext():
     text = resources.files("eomgen.documents").joinpath("languages", "de.po").read_text("utf-8")
     assert read_catalogue(text, "de").messages == catalogue("de").messages
     assert read_catalogue('msgid "a \\"b\\""\nmsgstr ""\n"c\\n"\n"d"\n', "x").messages == {'a "b"': "c\nd"}
+
+
+def test_formulas_stand_in_the_order_of_the_language():
+    graph = Graph()
+    a, b = graph.symbol("a"), graph.symbol("b")
+    said = catalogue("de").prose(Prose(("For ", a, ", divided by ", b, ":")))
+    assert said.pieces == ("Für ", a, ", geteilt durch ", b, ":")
+    turned = Catalogue("xx", {"For {1}, divided by {2}:": "{2} divides, for {1}:"})
+    assert turned.prose(Prose(("For ", a, ", divided by ", b, ":"))).pieces == (b, " divides, for ", a, ":")
