@@ -249,7 +249,8 @@ def covering(areas: Areas) -> list[tuple[str, str]]:
 
 
 def test_a_name_finds_its_place_inside_the_picture_or_none():
-    """At a corner it goes inwards; where the picture is smaller than the name it is left out."""
+    """At a corner it goes inwards; where the picture is smaller than the name it is left out; it is not nearer to the
+    place of another name than to its own."""
     page, none = PageBox(0, 0, 100, 100), np.zeros((0, 2))
     for at in ((0.0, 0.0), (100.0, 0.0), (0.0, 100.0), (99.0, 50.0)):
         box = room_for(at, (40, 10), (), none, (page, page), 1.0)
@@ -257,6 +258,10 @@ def test_a_name_finds_its_place_inside_the_picture_or_none():
     crowd = np.stack(np.meshgrid(np.arange(100.0), np.arange(100.0)), -1).reshape(-1, 2)
     assert room_for((50, 99), (40, 10), (), crowd, (page, page), 1.0) is not None
     assert room_for((50, 50), (140, 10), (), none, (page, page), 1.0) is None
+    own, other = np.array([[50.0, 50.0]]), np.array([[50.0, 62.0]])
+    alone, beside = (room_for((50, 50), (20, 8), (), none, (page, page), 1.0, others=x) for x in (none, other))
+    assert alone is not None and beside is not None
+    assert alone.away(other) < alone.away(own) and beside.away(own) < beside.away(other)
 
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=() if n in SOME else pytest.mark.slow) for n in REQUESTED])
@@ -323,12 +328,17 @@ def test_names_cover_no_line(name):
     assert lined(rest_picture(eomgen.load(MODELS / f"{name}.toml"))) == []
 
 
+LOADED = [
+    *(("statics", name) for name in ("fink_truss", "gerber_frame", "k_truss", "three_hinged_arch")),
+    ("kinematics", "quick_return"),
+]
+
+
 @pytest.mark.slow
-def test_numbers_along_members_stand_where_the_fewest_lines_cross():
-    """Of a picture of statics and of one of kinematics: values beside bars and loads cover no other bar."""
-    assert lined(eomgen.statics(MODELS / "fink_truss.toml").picture) == []
-    assert lined(eomgen.statics(MODELS / "gerber_frame.toml").picture) == []
-    assert lined(eomgen.kinematics(MODELS / "quick_return.toml").picture) == []
+@pytest.mark.parametrize(("verb", "name"), usual(LOADED, 2))
+def test_names_of_a_result_cover_no_line(verb, name):
+    """Values beside bars, loads and reactions cover no bar but their own and no arrow, of a truss, a frame, an arch."""
+    assert lined(getattr(eomgen, verb)(MODELS / f"{name}.toml").picture) == []
 
 
 def test_no_ellipsoid_of_inertia_hides_what_shows_its_body():

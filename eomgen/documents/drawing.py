@@ -134,13 +134,21 @@ def name_along(panel: Any, text: str, ends: Sequence[Any], color: str) -> None:
 
 
 def _named(panel: Any, name: PlacedName) -> None:
+    _names(panel).add(name)
+
+
+def _kept_off(panel: Any, line: Any) -> None:
+    """One more line, k x 2, that no name should cover."""
+    names = _names(panel)
+    names.lines = [*names.lines, np.array(line, dtype=float)]
+
+
+def _names(panel: Any) -> Any:
+    """The names of a panel, which it has from now on."""
     from eomgen.documents.letters import NamesArtist
 
     shown = [artist for artist in panel.artists if isinstance(artist, NamesArtist)]
-    if shown:
-        shown[0].add(name)
-    else:
-        panel.add_artist(NamesArtist([name], []))
+    return shown[0] if shown else panel.add_artist(NamesArtist([], []))
 
 
 # -------- scene drawing ---------------------------------------------------------------------------------------
@@ -338,6 +346,7 @@ def arrow(panel: Any, tip: PagePoint, vector: PagePoint, *, color: str, label: s
     )
     free = end if outward else begin
     panel.plot(*free, alpha=0)  # so that the axes hold it
+    _kept_off(panel, (begin, end))
     if label:
         name_beside(panel, label, free, color)
 
@@ -380,6 +389,7 @@ def moment_arc(panel: Any, sketch: Sketch, at: PagePoint, sense: float, *, color
         zorder=7,
         arrowprops={"arrowstyle": "-|>", "color": color, "linewidth": 1.5, "shrinkA": 0, "shrinkB": 0},
     )
+    _kept_off(panel, np.column_stack([x, y]))
     if label:
         name_beside(panel, label, (at[0], at[1] + r), color)
 
@@ -407,6 +417,7 @@ def distributed(
         tails.append(tip - vector)
         arrow(panel, (tip[0], tip[1]), (vector[0], vector[1]), color=color)
     panel.plot(*np.array(tails).T, color=color, linewidth=1.2, zorder=6)
+    _kept_off(panel, tails)
     if label:
         x, y = np.mean(tails, axis=0)
         name_beside(panel, label, (float(x), float(y)), color)

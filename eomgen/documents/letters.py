@@ -24,6 +24,8 @@ TURNS = tuple(math.pi * k / 8 for k in (2, 1, 14, 6, 3, 13, 10, 5, 0, 4, 12, 8, 
 APART = 1.0  # between two names [points]
 SHARES = (0.5, 0.4, 0.6, 0.3, 0.7, 0.22, 0.78)  # of a line, where the middle of what is written along it may stand
 BESIDE = 1.5  # of that from the line [points]
+NOWHERE = np.zeros((0, 2))
+STRANGE = 5.0  # cost of a name nearer to another's place, in rings
 COVERED = 4.0  # cost of a covered dot, in rings
 STEP = 3.0  # of the dots that stand for a line that should not be covered [points]
 
@@ -76,6 +78,13 @@ class PageBox:
         x, y = dots.T
         return int(np.count_nonzero((x > self.left) & (x < self.right) & (y > self.bottom) & (y < self.top)))
 
+    def away(self, places: np.ndarray) -> np.ndarray:
+        """Distances of places from the box [dots]."""
+        x, y = places.T
+        dx, dy = np.maximum(self.left - x, x - self.right), np.maximum(self.bottom - y, y - self.top)
+        found: np.ndarray = np.hypot(np.maximum(dx, 0), np.maximum(dy, 0))
+        return found
+
 
 def _beside(at: tuple[float, float], size: tuple[float, float], away: float, turn: float) -> PageBox:
     """A box of a size next to a place, so far away in a direction that its edge or corner is turned to it."""
@@ -92,6 +101,8 @@ def room_for(
     dots: np.ndarray,
     inside: tuple[PageBox, PageBox],
     point: float,
+    *,
+    others: np.ndarray = NOWHERE,
 ) -> PageBox | None:
     """The best box of a size next to a place, which meets none that is taken; None where there is no room.
 
@@ -99,6 +110,7 @@ def room_for(
         dots: points that should not be covered.
         inside: the panel, which it should not leave, and the picture, which it never does.
         point: a point in dots.
+        others: places of other names, to which it should not be nearer than to its own.
     """
     best: tuple[float, PageBox | None] = (math.inf, None)
     kept = [box.grown(APART * point) for box in taken]
@@ -108,6 +120,7 @@ def room_for(
             if not inside[1].holds(box) or any(box.meets(other) for other in kept):
                 continue
             cost = number + 0.05 * order + COVERED * box.covered(dots) + (0 if inside[0].holds(box) else 30)
+            cost += STRANGE * bool((box.away(others) < box.away(np.array([at])) - point).any())
             if cost < best[0]:
                 best = (cost, box)
     return best[1]
@@ -198,6 +211,7 @@ class NamesArtist(Artist):
         window = self.axes.get_window_extent(renderer)
         inside = PageBox(*window.extents), PageBox(*figure.bbox.extents)
         self.areas = []
+        places = page(np.array([name.at for name in self.names if name.along is None]).reshape(-1, 2))
         taken = self._others(renderer)
         for name in self.names:
             text = Text(0, 0, name.text, color=name.color, fontsize=name.size, path_effects=halo())
@@ -209,7 +223,7 @@ class NamesArtist(Artist):
                 self.areas.append((name.text, found))
                 taken += found
                 text.draw(renderer)
-            elif (box := room_for((x, y), wide, taken, dots, inside, point)) is not None:
+            elif (box := room_for((x, y), wide, taken, dots, inside, point, others=places)) is not None:
                 self.areas.append((name.text, (box,)))
                 taken.append(box)
                 text.set_position((box.left - size.x0, box.bottom - size.y0))
