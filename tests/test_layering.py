@@ -264,7 +264,7 @@ DOORS = {  # rooms that are imported through what their stub names, and how many
     "mechanics.linearization": 15,
     "symbolic.expression": 82,
     "symbolic.numeric": 46,
-    "symbolic.print": 25,
+    "symbolic.print": 28,
     "symbolic.exact": 49,
 }
 
@@ -372,10 +372,10 @@ def house():
 
 def test_a_newcomer_has_no_more_to_know_than_was_reached(house):
     """Modules outside the seams, lines of the longest, modules of one importer, names of lower rooms used elsewhere."""
-    assert len(house.chapters) <= 348
+    assert len(house.chapters) <= 351
     assert max(m.lines for m in house.modules.values()) <= 700
-    assert len(house.private) <= 51
-    assert len(house.taken_from(("symbolic", "model", "mechanics", "codegen", "simulation"))) <= 588
+    assert len(house.private) <= 53
+    assert len(house.taken_from(("symbolic", "model", "mechanics", "codegen", "simulation"))) <= 591
     assert {room: k for room in FOREIGN if (k := len(house.taken_by(room))) > FOREIGN[room]} == {}
 
 

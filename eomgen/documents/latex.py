@@ -33,7 +33,7 @@ from eomgen.documents.statements import (
     prose,
 )
 from eomgen.symbolic.expression import Graph, Node, Scalar, order, parse
-from eomgen.symbolic.print import Set, Setter, latex_escaped
+from eomgen.symbolic.print import PAPER, Set, SetLine, Setter, latex_escaped
 
 name = "latex"
 
@@ -203,9 +203,9 @@ def grouped(statements: Sequence[Statement]) -> list[Group]:
     return groups
 
 
-def display_blocks(setter: Setter, formulas: Sequence[Formula]) -> list[str]:
+def display_blocks(setter: Setter, formulas: Sequence[Formula], line: SetLine = PAPER) -> list[str]:
     """The formulas in aligned blocks of a few rows each."""
-    return [_with_decimals(setter, block) for block in setter.displays(_sides(setter, formulas), BLOCK)]
+    return [_with_decimals(setter, block) for block in setter.displays(_sides(setter, formulas), BLOCK, line)]
 
 
 def _with_decimals(setter: Setter, tex: str) -> str:
@@ -288,25 +288,19 @@ def side_latex(setter: Setter, side: Side) -> str:
 def _side(setter: Setter, side: Side) -> Set | Scalar:
     """A scalar as it is; a quantity as set."""
     if isinstance(side, (Name, Entry, Partial, Rate)):
-        return Set.of(_quantity(setter, side))
+        return Set(_quantity(setter, side))
     if isinstance(side, Matrix):
         return _matrix(setter, side)
     if isinstance(side, Omitted):
-        return Set(rf"\text{{({side.operations} operations, not printed)}}", 32)
-    return Set.of(side.latex) if isinstance(side, Law) else side
+        return Set(rf"\text{{({side.operations} operations, not printed)}}")
+    return Set(side.latex) if isinstance(side, Law) else side
 
 
 def _matrix(setter: Setter, matrix: Matrix) -> Set:
-    """Matrix in parentheses; as wide as its columns side by side."""
+    """Matrix in parentheses."""
     rows = [[_whole(setter, entry) for entry in row] for row in matrix.rows]
-    width = sum(max(entry.width for entry in column) + 2 for column in zip(*rows, strict=True))
     lines = r" \\ ".join(" & ".join(entry.tex for entry in row) for row in rows)
-    return Set(rf"\begin{{pmatrix}} {lines} \end{{pmatrix}}", width)
-
-
-def setter_width(setter: Setter, side: Side) -> float:
-    """Approximate width of a side that is set on one line [characters]."""
-    return _whole(setter, side).width
+    return Set(rf"\begin{{pmatrix}} {lines} \end{{pmatrix}}")
 
 
 def _whole(setter: Setter, side: Side) -> Set:

@@ -12,7 +12,6 @@ from eomgen.documents.latex import (
     piece_latex,
     quantity_sides,
     setter_of,
-    setter_width,
     side_latex,
     with_listings_typeset,
 )
@@ -31,7 +30,7 @@ from eomgen.documents.statements import (
 )
 from eomgen.model import Model
 from eomgen.symbolic.expression import Graph
-from eomgen.symbolic.print import Notation, Setter
+from eomgen.symbolic.print import PAPER, Notation, Setter
 
 name = "markdown"
 
@@ -89,7 +88,7 @@ def _row_name(row: Found) -> str:
 
 def _reported(setter: Setter, found: Quantity) -> str:
     sides = quantity_sides(Graph(), found)
-    shown = [side_latex(setter, side) for side in sides if setter_width(setter, side) <= Setter.LINE]
+    shown = [tex for tex in (side_latex(setter, side) for side in sides) if PAPER.width(tex) <= PAPER.room]
     parts = [f"${' = '.join(shown)}$".replace("|", r"\vert ")] if shown else []
     if len(shown) < len(sides):
         parts.append(f"({len(found.exact or '')} characters: `.exact`)")

@@ -45,9 +45,12 @@ from eomgen.page.markup import (
 )
 from eomgen.page.packing import table_bytes, with_far_copies
 from eomgen.proof import SIGNS, Certificate
-from eomgen.symbolic.print import Setter
+from eomgen.symbolic.print import PAPER, PHONE, Setter
 from eomgen.version import __version__
 
+BEGIN, END = "\\begin{aligned}\n", "\n\\end{aligned}"
+FIT = 0.95  # of its room that a formula takes whose letters are made smaller for it
+SMALLEST = 0.45  # letters of a formula that a narrow page shows whole, as a share of the others
 LARGEST = 1.5  # pixels of a point of a picture
 DIGITS = 9  # of the numbers of a table that a page offers: as many as a run is sure of
 _NUMBER = re.compile(r"(-?)(\d+(?:[.,]\d+)?)(?:e([-+]\d+))?")
@@ -182,15 +185,32 @@ def _group(setter: Setter, group: Group) -> Html:
 
 
 def _formulas(setter: Setter, formulas: Sequence[Formula]) -> Html:
-    """Formulas below one another, which can be copied as LaTeX and as text of the grammar."""
-    blocks = display_blocks(setter, formulas)
+    """Formulas below one another, which can be copied as LaTeX and as text of the grammar.
+
+    Where a narrow page needs other lines they stand there twice: the style sheet shows those that fit.
+    """
+    wide, narrow = (display_blocks(setter, formulas, line) for line in (PAPER, PHONE))
     text = "\n".join(map(formula_text, formulas))
     buttons = (
         element("button", "LaTeX", type="button", data_copy="", aria_label="Copy as LaTeX"),
         element("button", "text", type="button", data_copy=text, aria_label="Copy as text"),
     )
-    shown = _scrolled(in_a_row(*(mathml(block, display=True) for block in blocks)), "formula")
+    shown = in_a_row(*(mathml(block, display=True) for block in wide))
+    if wide != narrow or any(map(_fit, narrow)):
+        fitted = (element("div", mathml(block, display=True), style=_fit(block)) for block in narrow)
+        shown = in_a_row(element("div", shown, class_="wide"), element("div", *fitted, class_="narrow"))
+    shown = _scrolled(shown, "formula")
     return element("div", shown, element("span", *buttons, class_="copy"), class_="formula")
+
+
+def _fit(tex: str) -> str | None:
+    """The style of what cannot be broken for a narrow page, whose letters are smaller there; None where it fits."""
+    rows = [row.partition("&") for row in tex.removeprefix(BEGIN).removesuffix(END).split(" \\\\\n")]
+    lead = max(PHONE.width(left) for left, mark, _ in rows if mark) if rows[0][1] else 0.0
+    share = (
+        FIT * PHONE.room / max(PHONE.width(right) + lead if mark else PHONE.width(left) for left, mark, right in rows)
+    )
+    return f"--fit: {max(SMALLEST, share):.2f}" if share < FIT else None
 
 
 def _scrolled(inside: Html, what: str) -> Html:
@@ -204,7 +224,9 @@ def piece_html(setter: Setter, piece: Piece) -> Html:
         return html(piece)
     if isinstance(piece, Code):
         return element("code", piece.text)
-    return mathml(piece_latex(setter, piece, str)[1:-1])
+    tex = piece_latex(setter, piece, str)[1:-1]
+    fit = _fit(tex)
+    return Html(mathml(tex).replace("<math", f'<math style="{fit}"', 1)) if fit else mathml(tex)
 
 
 def _table(setter: Setter, grid: Grid) -> Html:

@@ -3,7 +3,7 @@
 "use strict";
 const apart = (async () => JSON.parse(new TextDecoder().decode(await unzipped(document.getElementById("apart").innerHTML))))();
 for (const button of document.querySelectorAll(".formula [data-copy='']")) {
-  button.dataset.copy = Array.from(button.closest(".formula").querySelectorAll(".tex"), (tex) => tex.textContent).join("\n");
+  button.dataset.copy = Array.from(button.closest(".formula").querySelectorAll(".tex:not(.narrow *)"), (tex) => tex.textContent).join("\n");
 }
 (async () => {
   const { formulas, pictures } = await apart;

@@ -14,6 +14,7 @@ from eomgen.documents import (
     Lines,
     Piece,
     Prose,
+    Side,
     display_blocks,
     grouped,
     key_of,
@@ -25,11 +26,12 @@ from eomgen.page.contents import INKS, Report, ReportFigure, ReportSection
 from eomgen.page.html import svg
 from eomgen.page.markup import element, in_a_row, style
 from eomgen.proof import SIGNS, Certificate
-from eomgen.symbolic.print import Setter
+from eomgen.symbolic.print import PAPER, Setter
 from eomgen.version import __version__
 
 WHOLE = 576.0  # points of a picture that is as wide as the text
 TOGETHER = 5  # rows of a display that a page's end does not part
+SHORT = 24  # rows of a table that stays on one page
 WORDY = 24  # characters from which on a column of a table is as wide as there is room
 INK = (
     "text{font-family:'New Computer Modern';font-size:11px;fill:#444}.axis{stroke:#ddd;fill:none}"
@@ -41,8 +43,12 @@ PREAMBLE = """#set page(paper: "a4", margin: (x: 24mm, top: 24mm, bottom: 26mm),
 #set text(font: "New Computer Modern", size: 10.5pt)
 #set par(leading: 0.62em, spacing: 0.85em)
 #show math.equation: set text(font: "New Computer Modern Math")
+#let fitted(it) = layout(room => {
+  let wide = measure(it).width
+  if wide > room.width { scale(100% * (room.width / wide), reflow: true, origin: top + left, it) } else { it }
+})
 #show math.equation.where(block: true): set align(left)
-#show math.equation.where(block: true): it => block(inset: (left: 1.4em, y: 0.25em), breakable: true, it)
+#show math.equation.where(block: true): it => block(inset: (left: 1.4em, y: 0.25em), breakable: true, fitted(it))
 #show math.equation.where(block: true): set block(breakable: true)
 #show heading.where(level: 1): set text(size: 14pt)
 #show heading.where(level: 1): set block(above: 1.9em, below: 0.9em)
@@ -126,16 +132,31 @@ def _piece(setter: Setter, piece: Piece) -> str:
 
 
 def _table(setter: Setter, grid: Grid) -> str:
-    longest = [
-        max(len(c) if isinstance(c, str) else 0 for c in column) for column in zip(grid.head, *grid.rows, strict=True)
-    ]
-    room = sum(longest) > 90  # then long columns share what the others leave
-    columns = ", ".join("1fr" if room and each > WORDY else "auto" for each in longest)
+    columns = ", ".join(_columns(setter, grid))
     units = [key_of(head) == "unit" for head in grid.head]
     head = "".join(f"{_cell(setter, cell, False)}, " for cell in grid.head)
     rows = "\n".join("".join(f"{_cell(setter, c, u)}, " for c, u in zip(row, units, strict=True)) for row in grid.rows)
     line = "table.hline(stroke: 0.7pt)"
-    return f"#table(columns: ({columns},), {line}, table.header({head}table.hline(stroke: 0.4pt)),\n{rows}\n{line})"
+    table = f"table(columns: ({columns},), {line}, table.header({head}table.hline(stroke: 0.4pt)),\n{rows}\n{line})"
+    return f"#{table}" if len(grid.rows) > SHORT else f"#block(breakable: false, fitted({table}))"
+
+
+def _columns(setter: Setter, grid: Grid) -> list[str]:
+    """Widths of columns; in a wide table long columns of words share what the others leave."""
+    formulas, words = [], []
+    for column in zip(grid.head, *grid.rows, strict=True):
+        words.append(max(len(cell) if isinstance(cell, str) else 0 for cell in column))
+        formulas.append(max(0 if isinstance(cell, str) else _letters(setter, cell) for cell in column))
+    longest = list(map(max, words, formulas))
+    return [
+        "1fr" if sum(longest) > 90 and each == most > WORDY else "auto"
+        for each, most in zip(words, longest, strict=True)
+    ]
+
+
+def _letters(setter: Setter, side: Side) -> int:
+    """Room of a formula in letters."""
+    return round(2 * PAPER.width(side_latex(setter, side)))
 
 
 def _cell(setter: Setter, cell: Cell, is_unit: bool) -> str:

@@ -73,8 +73,12 @@ def report_read_back(report: Report, files: FilesByName, form: str, run: Traject
         yield checked("the page, read back, says what was found", f"nobody can read it: {error}", HOW)
         return
     comparison = PageComparison(report.as_document, laws=form != ".html")
-    yield from comparison.checks(list(_wanted(report, form)), read.blocks)
+    wanted = list(_wanted(report, form))
+    yield from comparison.checks(wanted, read.blocks)
     if form == ".html":
+        formulas = [each for each in wanted if each.kind == "formula"]
+        narrow = PageComparison(report.as_document, laws=False).checks(formulas, read.narrow)
+        yield from (check for check in narrow if check.status == "fails")
         yield from _copied(report, read)
         yield from _carried(report, read)
     if run is not None and len(run.t):

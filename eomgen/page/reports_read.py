@@ -118,6 +118,7 @@ class ReadReport:
         drawings: the curves of each drawing that has some, by its caption.
         legends: of each drawing its curves by class and name.
         files: files that it carries: name, content, and the columns that are named.
+        narrow: its displayed formulas as a narrow page has them.
     """
 
     blocks: tuple[PageBlock, ...]
@@ -125,6 +126,7 @@ class ReadReport:
     drawings: tuple[tuple[str, ReadCurves], ...] = ()
     legends: tuple[tuple[str, tuple[tuple[str, PageLine], ...]], ...] = ()
     files: tuple[tuple[str, bytes, tuple[str, ...]], ...] = ()
+    narrow: tuple[PageBlock, ...] = ()
 
 
 def unpacked(text: str) -> bytes:
@@ -147,6 +149,7 @@ class _HtmlReading:
         self.drawings: list[tuple[str, ReadCurves]] = []
         self.legends: list[tuple[str, tuple[tuple[str, PageLine], ...]]] = []
         self.files: list[tuple[str, bytes, tuple[str, ...]]] = []
+        self.narrow: list[PageBlock] = []
         self.shown = 0  # formulas that stood alone so far
 
     def whole(self) -> ReadReport:
@@ -159,7 +162,7 @@ class _HtmlReading:
             for each in section.elements:
                 if not (played and each.tag == "p"):  # words of a player of a motion
                     self._element(each)
-        parts = (self.blocks, self.copied, self.drawings, self.legends, self.files)
+        parts = (self.blocks, self.copied, self.drawings, self.legends, self.files, self.narrow)
         return ReadReport(*map(tuple, parts))  # type: ignore[arg-type]
 
     def _element(self, each: Markup) -> None:
@@ -178,15 +181,18 @@ class _HtmlReading:
             self.files += [_file(link) for link in each.all("a")]
 
     def _formulas(self, each: Markup) -> None:
-        found: list[PageBlock] = []
+        found, narrow = list[PageBlock](), list[PageBlock]()
+        apart = {id(pre) for box in each.all("div") if box.given.get("class") == "narrow" for pre in box.all("pre")}
         for pre in each.all("pre"):
             tex = pre.text.removeprefix(r"\[").removesuffix(r"\]")
             annotated = next(markup_of(self.apart["formulas"][self.shown]).all("annotation")).text
             self.shown += 1
             if annotated != tex:
                 raise ValueError("a formula is another where no scripts run")
-            found += displayed(tex.removeprefix("\\begin{aligned}\n").removesuffix("\n\\end{aligned}"))
+            rows = displayed(tex.removeprefix("\\begin{aligned}\n").removesuffix("\n\\end{aligned}"))
+            (narrow if id(pre) in apart else found).extend(rows)
         self.blocks += found
+        self.narrow += narrow or found
         for button in each.all("button"):
             if number := button.given.get("data-copied"):
                 self.copied.append((self.apart["copied"][int(number)], tuple(found)))

@@ -1,9 +1,18 @@
 """Door of the folder: what other folders may import from `eomgen.symbolic.print`."""
 
+# 0.93 of the lines of a paper, of LaTeX and of a wide page
+from eomgen.symbolic.print.breaking import PAPER as PAPER
+
+# of a page that is 360 pixels wide
+from eomgen.symbolic.print.breaking import PHONE as PHONE
+
+# Line that formulas are broken for
+from eomgen.symbolic.print.breaking import SetLine as SetLine
+
 # Typesetting of the names of a model
 from eomgen.symbolic.print.latex import Notation as Notation
 
-# A typeset formula: its LaTeX, its approximate width in characters, the precedence of its outermost operation
+# A typeset formula: its LaTeX, the precedence of its outermost operation
 from eomgen.symbolic.print.latex import Set as Set
 
 # Sets graph scalars, with one notation for all of them

@@ -1,6 +1,6 @@
 r"""Node -> LaTeX as a textbook sets it.
 
-Node -> LaTeX as a textbook sets it: \frac{27}{2} M R^{2} \dot{\theta}^{2} \cos^{2}\theta, and its width.
+Node -> LaTeX as a textbook sets it: \frac{27}{2} M R^{2} \dot{\theta}^{2} \cos^{2}\theta.
 
 Only amsmath and KaTeX's common ground is used. Factors are juxtaposed, functions last, quotients are fractions.
 Loops over an explicit stack, as the printing of text does.
@@ -15,6 +15,7 @@ from itertools import groupby, pairwise
 
 from eomgen.frozen import dataclass
 from eomgen.symbolic.expression import SUMS, Fraction, Node, Number, Scalar, sampled_of
+from eomgen.symbolic.print.breaking import OVER, PAPER, TIMES, LinePiece, SetLine
 from eomgen.symbolic.print.layout import (
     TRIGONOMETRIC,
     Factor,
@@ -46,23 +47,15 @@ WRAPPED: dict[str, Callable[[str], str]] = {
     "abs": lambda x: rf"\left\lvert {x} \right\rvert",
 }
 RELATIONS = {"less": "<", "less_equal": r"\leq"}
-_COMMAND = re.compile(r"\\[a-zA-Z]+")
 _HIGH = re.compile(r"\\(?:frac|sqrt|begin|left)")
-_SILENT = re.compile(r"[{}_^\\ ]")
 
 
 @dataclass(frozen=True, slots=True)
 class Set:
-    """A typeset formula: its LaTeX, its approximate width in characters, the precedence of its outermost operation."""
+    """A typeset formula: its LaTeX, the precedence of its outermost operation."""
 
     tex: str
-    width: float
     hold: int = ATOM
-
-    @classmethod
-    def of(cls, tex: str) -> Set:
-        """A formula that is typeset already."""
-        return cls(tex, width_of(tex))
 
 
 class Setter:
@@ -71,8 +64,6 @@ class Setter:
     Args:
         notation: typesetting of names; None: by their own letters.
     """
-
-    LINE = 87.0  # characters
 
     def __init__(self, notation: Notation | None = None) -> None:
         self.notation = notation or Notation()
@@ -96,15 +87,15 @@ class Setter:
                 self._set[stack.pop()] = self._made(node)
         return self._set[x]
 
-    def displays(self, formulas: Sequence[Sequence[Set | Scalar]], longest: int) -> list[str]:
+    def displays(self, formulas: Sequence[Sequence[Set | Scalar]], longest: int, line: SetLine = PAPER) -> list[str]:
         """The formulas in aligned blocks of about `longest` rows each."""
-        return [aligned(rows) for rows in runs_of(self, formulas, longest)]
+        return [aligned(rows) for rows in runs_of(self, formulas, longest, line)]
 
     def display(self, formulas: Sequence[Sequence[Set | Scalar]]) -> str:
         """The formulas in one aligned block."""
-        leads = [lead_of(self, sides) for sides in formulas]
+        leads = [lead_of(self, sides, PAPER) for sides in formulas]
         lead = max(leads) if all(leads) else 0.0
-        return aligned([row for sides in formulas for row in rows_of(self, sides, lead)])
+        return aligned([row for sides in formulas for row in rows_of(self, sides, PAPER, lead)])
 
     def summands(self, x: Scalar) -> list[Product]:
         """The terms of x, each with its factors, coefficients included."""
@@ -126,14 +117,14 @@ class Setter:
         if len(products) == 1:
             return self.term(products[0], first=True)
         parts = [self.term(product, first=i == 0) for i, product in enumerate(products)]
-        return Set(" ".join(part.tex for part in parts), sum(part.width for part in parts), SUM)
+        return Set(" ".join(part.tex for part in parts), SUM)
 
     def term(self, product: Product, *, first: bool) -> Set:
         """A term with its sign; a plus only where it is not the first."""
         body = self.product(product)
         sign = "-" if product.coefficient < 0 else "" if first else "+"
         hold = body.hold if not sign else SUM
-        return Set(f"{sign} {body.tex}".strip(), body.width + (3 if sign else 0), hold)
+        return Set(f"{sign} {body.tex}".strip(), hold)
 
     def product(self, product: Product, *, one_fraction: bool = False) -> Set:
         """|coefficient| * numerator / denominator; the number in front has a fraction of its own, or none."""
@@ -143,11 +134,11 @@ class Setter:
         if len(product.numerator) > 1 and is_time(product.numerator[-1][0]):
             before = self.product(Product(c, product.numerator[:-1], product.denominator))
             last = self.power(product.numerator[-1])
-            return Set(f"{before.tex} {last.tex}", before.width + last.width, SUM)
+            return Set(f"{before.tex} {last.tex}", SUM)
         whole = decimal_of(c) is not None
         above = self._juxtaposed(c if whole else c.numerator, product.numerator)
         below = self._juxtaposed(1 if whole else c.denominator, product.denominator)
-        return Set(rf"\frac{{{above.tex}}}{{{below.tex}}}", max(above.width, below.width), SUM)
+        return Set(rf"\frac{{{above.tex}}}{{{below.tex}}}", SUM)
 
     def _juxtaposed(self, c: Number, found: tuple[Factor, ...]) -> Set:
         """c and the factors side by side; functions last, so that no factor seems to belong to their argument."""
@@ -160,7 +151,7 @@ class Setter:
         tex = parts[0].tex
         for before, part in pairwise(parts):
             tex += _between(before.tex, part.tex) + part.tex
-        return Set(tex, sum(part.width for part in parts), parts[0].hold if len(parts) == 1 else SUM)
+        return Set(tex, parts[0].hold if len(parts) == 1 else SUM)
 
     def power(self, factor: Factor) -> Set:
         """base ^ exponent, the exponent a whole positive number."""
@@ -168,37 +159,35 @@ class Setter:
         found = self._set[base]
         if exponent != 1 and base.op in TRIGONOMETRIC:
             name = FUNCTIONS[base.op]
-            return Set(name + f"^{{{exponent}}}" + found.tex.removeprefix(name).lstrip(), found.width + 1, TALL)
+            return Set(name + f"^{{{exponent}}}" + found.tex.removeprefix(name).lstrip(), TALL)
         if found.hold == SUM or (found.hold == TALL and exponent != 1):
             found = bracketed(found)
-        return found if exponent == 1 else Set(f"{found.tex}^{{{exponent}}}", found.width + 0.7, TALL)
+        return found if exponent == 1 else Set(f"{found.tex}^{{{exponent}}}", TALL)
 
     def _base(self, node: Node) -> Set:
         op = node.op
         if op in ("symbol", "pi"):
             tex = r"\pi" if op == "pi" else self.notation.latex(node.name)
-            return Set(tex, width_of(tex), TALL if "^" in tex else ATOM)
+            return Set(tex, TALL if "^" in tex else ATOM)
         if op == "sampled":
-            tex = self.notation.latex(sampled_of(node.args[1]).name)
-            return Set.of(tex)
+            return Set(self.notation.latex(sampled_of(node.args[1]).name))
         arguments = [self._set[a] if type(a) is Node else _number(a) for a in node.args]
         if op == "sqrt":
             arguments = [self._in_one_fraction(node.args[0])]
         inside = ", ".join(a.tex for a in arguments)
-        width = sum(a.width + 1 for a in arguments)
         if op in WRAPPED:
-            return Set(WRAPPED[op](inside), width + 1, ATOM if op == "abs" else TALL)
+            return Set(WRAPPED[op](inside), ATOM if op == "abs" else TALL)
         if op in RELATIONS:
-            return Set(f" {RELATIONS[op]} ".join(a.tex for a in arguments), width + 2, SUM)
+            return Set(f" {RELATIONS[op]} ".join(a.tex for a in arguments), SUM)
         if op == "select":
             return self._cases(node)
         if op == "pow":
             base = arguments[0] if arguments[0].hold == ATOM else bracketed(arguments[0])
-            return Set(f"{base.tex}^{{{arguments[1].tex}}}", width, TALL)
+            return Set(f"{base.tex}^{{{arguments[1].tex}}}", TALL)
         if len(arguments) == 1 and is_bare_argument(op, node.args[0]):
             inside = self._in_one_fraction(node.args[0]).tex
-            return Set(FUNCTIONS[op] + (inside if inside.startswith("\\") else f" {inside}"), width + len(op), TALL)
-        return Set(f"{FUNCTIONS[op]}{_in_brackets(inside)}", width + len(op) + 1, TALL)
+            return Set(FUNCTIONS[op] + (inside if inside.startswith("\\") else f" {inside}"), TALL)
+        return Set(f"{FUNCTIONS[op]}{_in_brackets(inside)}", TALL)
 
     def _in_one_fraction(self, x: Scalar) -> Set:
         """x, a product with a broken number as one fraction: 14 l/3."""
@@ -209,26 +198,18 @@ class Setter:
     def _cases(self, node: Node) -> Set:
         """Cases below one another: what is chosen where a condition fails is no case of its own."""
         rows: list[str] = []
-        width = 9.0
         last: Scalar = node
         while type(last) is Node and last.op == "select":
             condition, if_true, last = last.args
             value, where = self.set(if_true), self.set(condition)
             rows.append(f"{value.tex} & {where.tex}")
-            width = max(width, value.width + where.width)
         rows.append(rf"{self.set(last).tex} & \text{{otherwise}}")
-        width = max(width, self.set(last).width + 9) + 3
-        return Set(r"\begin{cases} " + r" \\ ".join(rows) + r" \end{cases}", width)
-
-
-def width_of(tex: str) -> float:
-    """Approximate width of a symbol [characters]."""
-    return max(1.0, 0.9 * len(_SILENT.sub("", _COMMAND.sub("x", tex.replace(r"\mathrm", "").replace(r"\dot", "")))))
+        return Set(r"\begin{cases} " + r" \\ ".join(rows) + r" \end{cases}")
 
 
 def bracketed(inside: Set) -> Set:
     """Formula in parentheses."""
-    return Set(_in_brackets(inside.tex), inside.width + 2)
+    return Set(_in_brackets(inside.tex))
 
 
 def _in_brackets(tex: str) -> str:
@@ -241,10 +222,9 @@ def _number(c: Number) -> Set:
     if c.denominator == 1 or decimal is not None:
         digits, power = decimal or (str(c), 0)
         scale = rf" \cdot 10^{{{power}}}" if power else ""
-        return Set(digits + scale, len(digits) + (5 if power else 0), ATOM if c >= 0 and not power else SUM)
-    width = max(len(str(abs(c.numerator))), len(str(c.denominator)))
+        return Set(digits + scale, ATOM if c >= 0 and not power else SUM)
     sign = "-" if c < 0 else ""
-    return Set(rf"{sign}\frac{{{abs(c.numerator)}}}{{{c.denominator}}}", width + 3 * len(sign), SUM)
+    return Set(rf"{sign}\frac{{{abs(c.numerator)}}}{{{c.denominator}}}", SUM)
 
 
 def _is_function(node: Node) -> bool:
@@ -264,10 +244,12 @@ def is_sum(node: Node) -> bool:
 
 
 # -------- lines -----------------------------------------------------------------------------------------
-# Formulas -> lines of an aligned block, each about `Setter.LINE` characters wide, broken before + and -.
+# Formulas -> lines of an aligned block, none wider than its line as far as they can be broken.
 
 
-NARROW = 24.0  # a left side that stands before the alignment
+NARROW = 0.27  # of a line: the widest left side that stands before the alignment
+EQUALS = 1.4  # an equality sign with its blanks [size of the letters]
+INDENT = 1.0  # of a row that goes on with the one before
 
 
 def aligned(rows: list[str]) -> str:
@@ -275,7 +257,9 @@ def aligned(rows: list[str]) -> str:
     return "\\begin{aligned}\n" + " \\\\\n".join(rows) + "\n\\end{aligned}"
 
 
-def runs_of(setter: Setter, formulas: Sequence[Sequence[Set | Scalar]], longest: int) -> list[list[str]]:
+def runs_of(
+    setter: Setter, formulas: Sequence[Sequence[Set | Scalar]], longest: int, line: SetLine = PAPER
+) -> list[list[str]]:
     """The rows of the formulas, in runs of about `longest` rows; the equality signs of a run stand below one another.
 
     A formula whose left side is too wide for that begins another run.
@@ -285,8 +269,8 @@ def runs_of(setter: Setter, formulas: Sequence[Sequence[Set | Scalar]], longest:
     """
     runs: list[list[str]] = []
     leads: list[float] = []
-    for lead, sides in _with_leads(setter, formulas):
-        rows = rows_of(setter, sides, lead)
+    for lead, sides in _with_leads(setter, formulas, line):
+        rows = rows_of(setter, sides, line, lead)
         if not runs or leads[-1] != lead or len(runs[-1]) + len(rows) > longest:
             runs.append([])
             leads.append(lead)
@@ -295,10 +279,10 @@ def runs_of(setter: Setter, formulas: Sequence[Sequence[Set | Scalar]], longest:
 
 
 def _with_leads(
-    setter: Setter, formulas: Sequence[Sequence[Set | Scalar]]
+    setter: Setter, formulas: Sequence[Sequence[Set | Scalar]], line: SetLine
 ) -> list[tuple[float, Sequence[Set | Scalar]]]:
     """(room on the left, sides): neighbours share the room; 0 where the left side is too wide."""
-    own = [lead_of(setter, sides) for sides in formulas]
+    own = [lead_of(setter, sides, line) for sides in formulas]
     found = []
     for is_narrow, group in groupby(range(len(own)), key=lambda i: own[i] > 0):
         indices = list(group)
@@ -307,123 +291,75 @@ def _with_leads(
     return found
 
 
-def lead_of(setter: Setter, sides: Sequence[Set | Scalar]) -> float:
+def lead_of(setter: Setter, sides: Sequence[Set | Scalar], line: SetLine) -> float:
     """The width of the left side; 0 where it is too wide to stand before the equality sign of a run."""
-    width = _set(setter, sides[0]).width
-    return width if width <= NARROW and len(sides) > 1 else 0.0
+    width = line.width(_set(setter, sides[0]).tex)
+    return width if width <= NARROW * line.room and len(sides) > 1 else 0.0
 
 
-def rows_of(setter: Setter, sides: Sequence[Set | Scalar], lead: float | None = None) -> list[str]:
+def rows_of(
+    setter: Setter, sides: Sequence[Set | Scalar], line: SetLine = PAPER, lead: float | None = None
+) -> list[str]:
     """The rows of one formula: its sides joined by equality signs.
 
     Args:
         sides: typeset formulas, or scalars.
         lead: the room for the left side, 0 for none before the alignment; by its own width where none is given.
     """
-    lead = lead_of(setter, sides) if lead is None else lead
+    lead = lead_of(setter, sides, line) if lead is None else lead
+    texts = [_set(setter, side).tex for side in sides]
     if lead:
-        return _rows_after(setter, sides, Setter.LINE - lead)
-    parts = pieces(setter, sides[0], Setter.LINE)
-    for side in sides[1:]:
-        head, *rest = pieces(setter, side, Setter.LINE)
-        parts += [Set(f"= {head.tex}", head.width + 3), *rest]
-    filled = _filled(parts, Setter.LINE)
+        return _rows_after(texts, line, line.room - lead - EQUALS)
+    parts = line.pieces(texts[0], line.room - INDENT)
+    for tex in texts[1:]:
+        head, *rest = line.pieces(tex, line.room - INDENT - EQUALS)
+        parts += [head.after("= ", EQUALS), *rest]
+    filled = _filled(parts, line.room)
     return [f"& {filled[0]}", *(rf"&\quad {part}" for part in filled[1:])]
 
 
-def _rows_after(setter: Setter, sides: Sequence[Set | Scalar], room: float) -> list[str]:
+def _rows_after(texts: Sequence[str], line: SetLine, room: float) -> list[str]:
     """left &= right, the right in as many rows as it needs."""
-    rows, line, width = [], f"{_set(setter, sides[0]).tex} &=", 0.0
-    for number, side in enumerate(sides[1:]):
-        whole = _set(setter, side)
-        if number and width + whole.width <= room:
-            line, width = f"{line} = {whole.tex}", width + whole.width + 3
+    rows, row, width = [], f"{texts[0]} &=", 0.0
+    for number, tex in enumerate(texts[1:]):
+        whole = line.width(tex)
+        if number and width + EQUALS + whole <= room:
+            row, width = f"{row} = {tex}", width + EQUALS + whole
             continue
         if number:
-            rows.append(line)
-            line = "&="
-        filled = _filled(pieces(setter, side, room), room)
-        line = f"{line} {filled[0]}"
+            rows.append(row)
+            row = "&="
+        filled = _filled(line.pieces(tex, room - INDENT) if whole > room else [LinePiece(tex, whole)], room)
+        row = f"{row} {filled[0]}"
         for part in filled[1:]:
-            rows.append(line)
-            line = rf"&\quad {part}"
-        width = whole.width
-    return [*rows, line]
+            rows.append(row)
+            row = rf"&\quad {part}"
+        width = whole
+    return [*rows, row]
 
 
 def _set(setter: Setter, side: Set | Scalar) -> Set:
     return side if isinstance(side, Set) else setter.set(side)
 
 
-def pieces(setter: Setter, side: Set | Scalar, room: float) -> list[Set]:
-    """Pieces of a side that are not broken further, each but the first with its sign in front."""
-    whole = _set(setter, side)
-    if isinstance(side, Set) or type(side) is not Node or whole.width <= room:
-        return [whole]
-    found: list[Set] = []
-    for number, product in enumerate(setter.summands(side)):
-        term = setter.term(product, first=number == 0)
-        found += [term] if term.width <= room else _opened(setter, product, term, room)
-    return found
-
-
-def _opened(setter: Setter, product: Product, term: Set, room: float) -> list[Set]:
-    """A term that is too long for a line, broken inside the parentheses of its longest sum."""
-    if product.denominator:
-        return _quotient(setter, product, term.tex[:2] if term.tex.startswith(("+", "-")) else "", room)
-    bases = [base for base, _ in product.numerator]
-    bases += [a for base in bases if base.op in FUNCTIONS for a in base.args if type(a) is Node]
-    sums = [base for base in bases if is_sum(base)]
-    if not sums:
-        return [term]
-    longest = max(sums, key=lambda base: setter.set(base).width)
-    bracket = bracketed(setter.set(longest)).tex
-    if term.tex.count(bracket) != 1:
-        return [term]
-    before, after = term.tex.split(bracket)
-    parts = pieces(setter, longest, room / 2)
-    parts[0] = Set(rf"{before}\bigl({parts[0].tex}", term.width - setter.set(longest).width + parts[0].width)
-    parts[-1] = Set(rf"{parts[-1].tex}\bigr){after}", parts[-1].width + 2)
-    return parts
-
-
-def _quotient(setter: Setter, product: Product, sign: str, room: float) -> list[Set]:
-    """A quotient that is too long for a fraction, in which no line can end: (above) / (below)."""
-    c = max(product.coefficient, -product.coefficient)
-    above = _factor_pieces(setter, Product(c.numerator, product.numerator, ()), room)
-    below = _factor_pieces(setter, Product(c.denominator, product.denominator, ()), room)
-    above[0] = Set(f"{sign}{above[0].tex}", above[0].width + len(sign))
-    joined = Set(rf"{above[-1].tex} \big/ {below[0].tex}", above[-1].width + below[0].width + 2)
-    return [*above[:-1], joined, *below[1:]]
-
-
-def _factor_pieces(setter: Setter, product: Product, room: float) -> list[Set]:
-    """A side of a quotient, in parentheses where it is more than one symbol."""
-    lone = product.coefficient == 1 and len(product.numerator) == 1
-    if lone and product.numerator[0][1] == 1 and is_sum(product.numerator[0][0]):
-        parts = pieces(setter, product.numerator[0][0], room / 2)
-    else:
-        term = setter.product(product)
-        parts = [term] if term.width <= room else _opened(setter, product, term, room)
-        if lone or not product.numerator:
-            return parts
-    parts[0] = Set(rf"\bigl({parts[0].tex}", parts[0].width + 1)
-    parts[-1] = Set(rf"{parts[-1].tex}\bigr)", parts[-1].width + 1)
-    return parts
-
-
-def _filled(parts: list[Set], room: float) -> list[str]:
+def _filled(parts: list[LinePiece], room: float) -> list[str]:
     """The pieces in lines."""
     lines: list[str] = []
     width = 0.0
     for part in parts:
         if lines and width + part.width <= room:
-            lines[-1] += f" {part.tex}"
+            lines[-1] += f" {_undotted(lines[-1], part.tex)}"
             width += part.width
         else:
+            width = part.width + (INDENT if lines else 0)
             lines.append(part.tex)
-            width = part.width + (2 if lines else 0)
     return lines
+
+
+def _undotted(before: str, after: str) -> str:
+    """A piece without the dot between factors that only a line's end needs."""
+    factor = after.removeprefix(TIMES)
+    return after if OVER in before or factor[0].isdigit() else factor
 
 
 # -------- names -----------------------------------------------------------------------------------------
