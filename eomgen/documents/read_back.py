@@ -582,7 +582,7 @@ def number_said(found: Quantity) -> str:
     rounded = exact
     for _ in range(2):  # 9.999 becomes 10.00, which has a digit more, and then 10.0
         rounded = exact.quantize(Decimal(1).scaleb((rounded.adjusted() if rounded else 0) - found.digits + 1))
-    long = abs(value) >= 1e6 or 0 < abs(value) < 1e-4
+    long = bool(exact) and not -4 <= rounded.adjusted() < 6
     return f"{float(rounded):.{found.digits - 1}e}" if long else f"{rounded:f}"
 
 

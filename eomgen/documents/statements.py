@@ -354,7 +354,7 @@ def quantities(statement: Statement) -> Iterator[Name]:
 # The results for one quantity: exact, as a number, the method; or the reason why they are missing.
 
 
-SMALLEST, LARGEST = 1e-4, 1e6  # numbers in between have no power of ten, however few digits of them are printed
+WRITTEN_OUT = range(-4, 6)  # powers of ten of numbers that are written without one, however few digits are printed
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _POWER = re.compile(r"\^(?:\((-?\d+)\)|(-?\d+))")
 
@@ -402,7 +402,8 @@ class Quantity:
         text = f"{value:#.{self.digits}g}"
         if "e" not in text:
             return text.removesuffix(".")
-        return f"{float(text):.0f}" if SMALLEST <= abs(value) < LARGEST else f"{value:.{self.digits - 1}e}"
+        power = int(text.partition("e")[2])
+        return f"{float(text):.0f}" if power in WRITTEN_OUT else f"{value:.{self.digits - 1}e}"
 
     @property
     def lines(self) -> list[str]:
