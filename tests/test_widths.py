@@ -39,9 +39,10 @@ BROKEN = [
     ("a + b - c", 2.0, ["a", "+ b", "- c"]),
     (r"- a \left(b + \frac{c}{d} + e\right)^{2}", 4.0, [r"- a \bigl(b", r"+ \frac{c}{d}", r"+ e\bigr)^{2}"]),
     (r"a_{1} b_{1} c_{1} d_{1}", 3.0, [r"a_{1} b_{1} c_{1}", r"\cdot d_{1}"]),
-    (r"\sin(\alpha + \beta) \cos\gamma", 4.5, [r"\sin(\alpha + \beta)", r"\cdot \cos\gamma"]),
+    (r"\sin(\alpha + \beta) \cos\gamma", 4.5, [r"\sin(\alpha + \beta)", r"\cos\gamma"]),
     (r"\frac{a + b + c + d}{e + f}", 5.0, [r"\bigl(a", "+ b", "+ c", r"+ d\bigr)", r"\big/ \bigl(e + f\bigr)"]),
     (r"\sqrt{a + b + c + d}", 5.0, [r"\bigl(a", "+ b", "+ c", r"+ d\bigr)^{1/2}"]),
+    (r"\frac{a + b}{c} d", 2.0, [r"\bigl(\bigl(a", r"+ b\bigr)", r"\big/ c\bigr)", r"\cdot d"]),
     (r"12 m_{1}", 1.0, ["12", r"\cdot m_{1}"]),
     (r"\varphi(t) + f(x)", 1.0, [r"\varphi(t)", "+ f(x)"]),
 ]

@@ -138,8 +138,8 @@ class _Breaking:
         return [self.whole(line) if k == 0 else self._times(line, self.whole(line)) for k, line in enumerate(lines)]
 
     def _times(self, items: Sequence[TexItem], piece: LinePiece) -> LinePiece:
-        """The piece with the dot that joins it to the factors before it, where it has none."""
-        joined = bool(items) and items[0].kind in ("bin", "rel", "punct")
+        """The piece with the dot that joins it to the factors before it; a function needs none."""
+        joined = bool(items) and items[0].kind in ("bin", "rel", "punct", "op")
         return piece if joined else piece.after(TIMES, SIGN)
 
     def _around(
@@ -148,6 +148,9 @@ class _Breaking:
         """Pieces of a term with one of its parts opened."""
         lead = self.whole(before).width
         inner = self._opened(item, room if lead > LEAD * room else room - lead)
+        if item.kind == "frac" and any(other.kind not in ("space", "punct") for other in after):
+            # (a/b) c: what is behind a/b on its line would belong to its divisor
+            inner[0], inner[-1] = inner[0].after(r"\bigl(", SIGN / 2), inner[-1].then(r"\bigr)", SIGN / 2)
         tied = 0  # how many of the items before it go with it: its function, its sign, the letter it is an argument of
         while tied < len(before) and self._ties(before[-tied - 1], item if not tied else before[-tied]):
             tied += 1
@@ -158,7 +161,7 @@ class _Breaking:
         if free and set_length(free) + inner[0].width <= room:
             found = [inner[0].after(f"{self.whole(free).tex} ", set_length(free)), *inner[1:]]
         elif free:
-            found = [*self.term(free, room), self._times((), inner[0]), *inner[1:]]
+            found = [*self._enclosed(free, room), self._times((), inner[0]), *inner[1:]]
         rest = after[1:] if after and after[0].kind == "space" else after
         if not rest:
             return found
@@ -170,6 +173,15 @@ class _Breaking:
             ]
         first, *others = self.term(rest, room - SIGN)
         return [*found, self._times(rest, first), *others]
+
+    def _enclosed(self, items: Sequence[TexItem], room: float) -> list[LinePiece]:
+        """Pieces of factors that others follow: in brackets where a fraction among them is opened."""
+        found = self.term(items, room)
+        if any(OVER in piece.tex for piece in found):
+            sign = found[0].tex[:2] if found[0].tex.startswith(("+ ", "- ")) else ""
+            found[0] = LinePiece(rf"{sign}\bigl({found[0].tex[len(sign) :]}", found[0].width + SIGN / 2)
+            found[-1] = found[-1].then(r"\bigr)", SIGN / 2)
+        return found
 
     def _ties(self, item: TexItem, after: TexItem) -> bool:
         """True if an item cannot be parted from the one after it."""
@@ -204,7 +216,7 @@ class _Breaking:
         """A side of a quotient, in brackets where it is more than one symbol; its letters are as large as all then."""
         items = parsed(tex, self.font)
         found = _Breaking(tex, self.font, self.least).sum(items, room - SIGN)
-        if len(items) > 1:
+        if len(items) > 1 or items[0].kind == "frac":
             found[0] = found[0].after(r"\bigl(", SIGN / 2)
             found[-1] = found[-1].then(r"\bigr)", SIGN / 2)
         return found
