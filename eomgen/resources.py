@@ -12,6 +12,7 @@ import math
 import sys
 import threading
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -66,7 +67,8 @@ class _Clock:
     def error(self) -> OutOfPatience:
         """The error that says what was done, what was given up, and how to go on."""
         given_up = ", ".join(self.activities[-2:]) or "the work"
-        before = f" (done before: {', '.join(self.done[-4:])})" if self.done else ""
+        done = [f"{what} ({n} times)" if n > 1 else what for what, n in Counter(self.done).items()]
+        before = f" (done before: {', '.join(done[-4:])})" if done else ""
         what = f"given up after {self.seconds:g} s, {self.kept}: {given_up}{before}"
         return OutOfPatience(what, fix="ask for less, or wait longer: --patience SECONDS, --patience none")
 

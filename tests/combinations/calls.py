@@ -110,11 +110,14 @@ def commands(text: str, rng: Random, more: int = 3, *, every_format: bool = Fals
     number = next((n for n in ("m", "k", "g", "l0", "m0", "h") if re.search(rf"^{n} = ", text, re.M)), "m")
     method = rng.choice(("lagrange", "projection", "kinetostatic"))
     way = rng.choice(("projection", "energy", "baumgarte", "none"))
+    side = Random(len(text))  # draws of its own: what is drawn above and below stays as it was
+    language = side.choice(([], ["--language", side.choice(("de", "es", "fr"))]))
+    sheet = side.choice(([], ["--for", side.choice(("problem", "worksheet", "solution"))], ["--with", "free_bodies"]))
     run = ["--time", "0.4", "--samples", "5", "--target", "numpy"]
     swept = rng.choice((["--over", f"{number}=1,1.2"], ["--random", f"{number}=uniform(1, 1.2)", "--runs", "2"]))
     found = [
         ["check", "MODEL", *rng.choice(([], ["--json"]))],
-        ["derive", "MODEL", "--method", method, *form(), *rng.choice(([], ["--units"]))],
+        ["derive", "MODEL", "--method", method, *form(), *rng.choice(([], ["--units"])), *language],
         ["simulate", "MODEL", *run, "--stabilize", way, *form()],
         rng.choice((["solve", "MODEL", *form()], ["reactions", "MODEL", *form()])),
     ]
@@ -124,7 +127,7 @@ def commands(text: str, rng: Random, more: int = 3, *, every_format: bool = Fals
         "inertia": ["inertia", "MODEL", *form()],
         "linearize": ["linearize", "MODEL", *form(), *rng.choice(([], ["--about", "start"], ["--about", "steady"]))],
         "codegen": ["codegen", "MODEL", "-o", "OUT/code", "--target", rng.choice(LANGUAGES)],
-        "report": ["report", "MODEL", "-o", "OUT/" + rng.choice(PAGES), "--time", "0.3"],
+        "report": ["report", "MODEL", "-o", "OUT/" + rng.choice(PAGES), "--time", "0.3", *language, *sheet],
         "animate": ["animate", "MODEL", "-o", "OUT/a.html", "--time", "0.2", "--forces"],
         "play": ["play", "MODEL", "-o", "OUT/p.html", "--time", "0.3"],
         "sweep": ["sweep", "MODEL", "-o", "OUT/sweep", *swept, "--ask", f"last({q})", "--time", "0.2"],
@@ -267,6 +270,7 @@ PYTHON: dict[str, Callable[[Any], Any]] = {
     "simulate_many": lambda m: eomgen.simulate_many(m, time=0.1, parameters={next(iter(m.parameters)): [1.0, 1.1]}),
     "scene": lambda m: eomgen.scene_of(m),
     "regressor": lambda m: eomgen.regressor(m),
+    "free bodies": lambda m: _shown(m.free_bodies()),
     "freedom": lambda m: eomgen.freedom_of(m),
     "as_dict": lambda m: json.dumps(eomgen.derive(m).as_dict()),
 }

@@ -75,6 +75,16 @@ def test_what_takes_too_long_ends_and_says_what_was_done_and_what_was_given_up(e
     assert time.monotonic() - began < 30
 
 
+def test_what_was_done_several_times_is_said_once():
+    with pytest.raises(OutOfPatience) as caught, patience(1e-9):
+        for what in ("the verdict", "the verdict", "a page"):
+            with doing(what):
+                pass
+        with doing("the second"):
+            check_patience()
+    assert caught.value.what.endswith("the second (done before: the verdict (2 times), a page)")
+
+
 def test_nobody_who_tries_another_way_catches_the_end_of_patience():
     """The clock ends; it never chooses what is printed."""
     tries = []
