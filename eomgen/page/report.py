@@ -399,7 +399,8 @@ def report_of(subject: Subject, with_: Sequence[str] = (), without: Sequence[str
     failures = [document.failed for document in subject.documents.values()]
     failures += [subject.run.message] if "followed" in vars(subject) and not subject.run.ok else []
     failed = "; ".join(filter(None, failures))
-    head = replace(document_of(model, subject.main[1].method, ()), failed=failed)
+    main = subject.main[1]
+    head = replace(document_of(model, main.method, ()), failed=failed, notation=main.notation)
     values = replaced(subject)
     lasted = float(subject.run.t[-1]) if "followed" in vars(subject) and len(subject.run.t) else PAGE_TIME
     lasted = subject.time or lasted

@@ -201,6 +201,12 @@ def test_a_number_is_printed_with_the_digits_that_are_asked(value, digits, print
     assert Quantity(value=value, digits=digits).number == printed
 
 
+def test_a_reaction_has_the_letter_of_its_author_in_a_report_too(tmp_path):
+    report(CONKER, tmp_path / "s.md", for_="solution", steps=["reactions"])
+    page = (tmp_path / "s.md").read_text()
+    assert r"S &= m (l \dot{\varphi}^{2} + g \cos\varphi)" in page and "T_{S}" not in page
+
+
 # -- variants --------------------------------------------------------------------------------------
 
 
