@@ -12,6 +12,7 @@ from typing import Any
 
 import pytest
 from browser import visited
+from slow_run import usual
 from tools import needs, tool
 
 import eomgen
@@ -100,7 +101,7 @@ def seen(name: str) -> list[Any]:
 
 
 @needs("chromium")
-@pytest.mark.parametrize("name", [QUICK, *(pytest.param(name, marks=pytest.mark.slow) for name in NAMES)])
+@pytest.mark.parametrize("name", [QUICK, *(pytest.param(name, marks=pytest.mark.slow) for name in usual(NAMES, 3))])
 def test_no_formula_of_a_page_is_wider_than_its_block(name: str):
     """Its box ends where its block ends, on a telephone and on a wide screen; so does the page."""
     for screen in seen(name):
@@ -118,7 +119,7 @@ def test_widths_are_those_of_a_browser():
 
 
 @needs("pdftotext")
-@pytest.mark.parametrize("name", [QUICK, *(pytest.param(name, marks=pytest.mark.slow) for name in NAMES)])
+@pytest.mark.parametrize("name", [QUICK, *(pytest.param(name, marks=pytest.mark.slow) for name in usual(NAMES, 3))])
 def test_nothing_of_a_paper_passes_the_margin(name: str, tmp_path: Path):
     """The boxes of all words of the PDF."""
     path = tmp_path / "paper.pdf"

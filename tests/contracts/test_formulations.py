@@ -25,6 +25,7 @@ from eomgen.mechanics.kinematics.inertia import SystemInertia
 from eomgen.model.likely_mistakes import unbuilt
 from eomgen.symbolic.expression.derivatives import depends_on_any
 from eomgen.symbolic.expression.graph import same_number
+from eomgen.symbolic.expression.spatial import Vector
 from eomgen.symbolic.numeric.evaluation import NoValue
 
 pytestmark = [pytest.mark.slow, pytest.mark.by_model]
@@ -168,7 +169,7 @@ def test_second_moments_of_mass_are_symmetric_scalar_by_scalar(name):
     h = [system.scope.symbols.graph.symbol(x) for x in ("h_x", "h_y", "h_z")]
     for branch in branches_of(system.motion):
         own = branch.moments
-        moved = replace(own, h=tuple(h)).moved(branch.p).turned(branch.E).J
+        moved = replace(own, h=Vector(h)).moved(branch.p).turned(branch.E).J
         for J in (own.J, moved):
             assert all(same_number(J[i][j], J[j][i]) or J[i][j] is J[j][i] for i in range(3) for j in range(i))
 

@@ -54,7 +54,7 @@ def words(step: Step) -> Iterator[str]:
 
 
 @pytest.mark.by_model
-@pytest.mark.parametrize("name", NAMES if ALL else USUAL)
+@pytest.mark.parametrize("name", NAMES if ALL else USUAL[::2])
 def test_no_sentence_stays_english(name):
     path = MODELS / f"{name}.toml"
     own = set(re.findall(r"[A-Za-z]+", path.read_text()))
@@ -72,7 +72,7 @@ def test_no_sentence_stays_english(name):
         assert not left, section.key
 
 
-@pytest.mark.parametrize("language", OTHERS)
+@pytest.mark.parametrize("language", OTHERS if ALL else OTHERS[:1])
 def test_a_report_in_another_language_is_proven_and_its_formulas_are_the_same(language, tmp_path):
     for name, method in (("slider_crank", "kinetostatic"), ("conker", "lagrange"), ("gerber_beam", "lagrange")):
         ours, theirs = (report(MODELS / f"{name}.toml", method=method, language=each) for each in ("en", language))
