@@ -363,8 +363,8 @@ def test_functions_of_a_run_are_none_of_a_state():
 def test_a_wrong_value_is_seen_by_the_second_definition(monkeypatch):
     """Velocities that are a thousandth too large, and spins of the wrong sign, are told."""
     rate, spin = Quantities.rate, Quantities.spin
-    monkeypatch.setattr(Quantities, "rate", lambda self, v: tuple(x * Fraction(1001, 1000) for x in rate(self, v)))
-    monkeypatch.setattr(Quantities, "spin", lambda self, body: tuple(-x for x in spin(self, body)))
+    monkeypatch.setattr(Quantities, "rate", lambda self, v: Fraction(1001, 1000) * rate(self, v))
+    monkeypatch.setattr(Quantities, "spin", lambda self, body: -spin(self, body))
     for call in (
         "vx(arm.end)",
         "ay(arm.end)",
