@@ -30,6 +30,7 @@ from eomgen.model.forces.weights import Gravity
 from eomgen.proof.certificate import certify
 from eomgen.proof.printed import Printed
 from eomgen.proof.states import closed_state
+from eomgen.symbolic.expression import Matrix, Vector
 from eomgen.symbolic.expression.node import Scalar, linear_terms
 from eomgen.symbolic.numeric.evaluation import fifty_digits
 
@@ -117,7 +118,7 @@ def test_a_method_goes_its_own_way_and_an_error_on_it_turns_it_red(monkeypatch, 
 
 def turned_rate_matrix(w, wd):
     U = recursion_rate_matrix(w, wd)
-    return (-U[0], U[1], U[2])
+    return Matrix((-U[0], U[1], U[2]))
 
 
 recursion_rate_matrix = recursion.rate_matrix
@@ -132,7 +133,7 @@ def lighter(motion, link, plane):
 
 
 def swapped(w):
-    return (w[1], w[0], w[2])
+    return Vector((w[1], w[0], w[2]))
 
 
 def backwards(scope, above, before, local, s_rate, S, point):

@@ -82,7 +82,8 @@ def oracle_value(expression: Any, state: dict[str, float]) -> Any:
 
 
 def close(a: Any, b: Any, tolerance: float = 1e-30) -> bool:
-    return bool(abs(float(a - b)) <= tolerance * max(1.0, abs(float(b))))
+    apart = sympy.Float(str(a), 60) - sympy.Float(str(b), 60)  # two arithmetics meet in decimals
+    return bool(abs(float(apart)) <= tolerance * max(1.0, abs(float(b))))
 
 
 def test_every_parameter_has_another_number():
