@@ -207,9 +207,8 @@ def _fit(tex: str) -> str | None:
     """The style of what cannot be broken for a narrow page, whose letters are smaller there; None where it fits."""
     rows = [row.partition("&") for row in tex.removeprefix(BEGIN).removesuffix(END).split(" \\\\\n")]
     lead = max(PHONE.width(left) for left, mark, _ in rows if mark) if rows[0][1] else 0.0
-    share = (
-        FIT * PHONE.room / max(PHONE.width(right) + lead if mark else PHONE.width(left) for left, mark, right in rows)
-    )
+    widest = max(PHONE.width(right) + lead if mark else PHONE.width(left) for left, mark, right in rows)
+    share = FIT * PHONE.room / widest if widest else FIT  # of a formula without a sign nothing is set
     return f"--fit: {max(SMALLEST, share):.2f}" if share < FIT else None
 
 

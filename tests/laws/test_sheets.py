@@ -201,6 +201,13 @@ def test_a_number_is_printed_with_the_digits_that_are_asked(value, digits, print
     assert Quantity(value=value, digits=digits).number == printed
 
 
+def test_an_empty_formula_and_a_lone_brace_are_set(tmp_path):
+    model = eomgen.loads(model_with("A stone $ $ of mass {m}; $\\{a, b\\}$, 5 \\$."))
+    for ending in (".html", ".tex", ".md", ".pdf"):
+        report(model, tmp_path / f"p{ending}", for_="problem")
+        assert (tmp_path / f"p{ending}").stat().st_size > 150
+
+
 def test_a_reaction_has_the_letter_of_its_author_in_a_report_too(tmp_path):
     report(CONKER, tmp_path / "s.md", for_="solution", steps=["reactions"])
     page = (tmp_path / "s.md").read_text()
