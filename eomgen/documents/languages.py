@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import cache, cached_property
 from importlib import resources
-from itertools import islice
+from itertools import islice, starmap, zip_longest
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -150,9 +150,7 @@ class Catalogue:
         for signs in SIGNS:
             parts = signs.split(text)
             if len(parts) > 1:
-                found = [
-                    self._part(parts[k], parts[k + 1] if k + 1 < len(parts) else "") for k in range(0, len(parts), 2)
-                ]
+                found = list(starmap(self._part, zip_longest(parts[::2], parts[1::2], fillvalue="")))
                 yield "".join(words for words, _ in found), sum(left for _, left in found)
                 return
 
@@ -179,7 +177,7 @@ class Catalogue:
             symbol, meaning, unit, value = map(self.head, statement.head)
             found = Table((symbol, meaning, unit, value), tuple(map(self._meaning, statement.rows)))
         elif isinstance(statement, Grid):
-            rows = (tuple(self.say(cell) if isinstance(cell, str) else cell for cell in row) for row in statement.rows)
+            rows = (tuple(map(self._cell, row)) for row in statement.rows)
             heads = tuple(self.head(head) if isinstance(head, str) else head for head in statement.head)
             found = Grid(heads, tuple(rows))
         elif isinstance(statement, Formula):
