@@ -276,11 +276,14 @@ class Reading:
 
     @cached_property
     def letters(self) -> dict[str, Expression]:
-        """Names that stand for formulas, the first that says so: outputs of the file, symbols that it declares for
+        """Names that stand for formulas, the first that says so: outputs of the file and their symbols, symbols of
         reactions, T, V, L, letters of reactions and inertias, B_x, J_O.
         """
         model, own = self.system.scope.model, self.system.scope.names
         found = {name: output.value for name, output in model.outputs.items() if output.at is None and not output.from_}
+        for name, symbol in ((name, model.outputs[name].symbol) for name in tuple(found)):
+            if symbol is not None:
+                found.setdefault(plain_name(symbol.base, symbol.below), found[name])
         for letter, call in self._declared_letters():
             found.setdefault(letter, _called(call.name, *call.args))
         found = {**self._energies, **found}

@@ -214,6 +214,15 @@ def test_a_reaction_has_the_letter_of_its_author_in_a_report_too(tmp_path):
     assert r"S &= m (l \dot{\varphi}^{2} + g \cos\varphi)" in page and "T_{S}" not in page
 
 
+def test_the_letter_of_an_output_is_judged():
+    text = CONKER.read_text().replace(
+        'S = { value = "tension(thread)", at = "phi = 0",', 'S = { value = "tension(thread)", symbol = "F_S",'
+    )
+    model = eomgen.loads(text)
+    right, wrong = "F_S = m*(l*phi'^2 + g*cos(phi))", "F_S = m*(l*phi'^2 - g*cos(phi))"
+    assert eomgen.verify(model, right).verdict == "right" and eomgen.verify(model, wrong).verdict == "wrong"
+
+
 # -- variants --------------------------------------------------------------------------------------
 
 
