@@ -9,7 +9,7 @@ these rules alone come the reading of texts and numbers (`read`), the walk that 
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from fractions import Fraction
+from math import isfinite
 from typing import Any, Generic, TypeVar
 
 from eomgen.errors import ExpressionError
@@ -352,8 +352,8 @@ class NumbersRule(WholeRule):
 
     def read(self, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> tuple[Any, ...] | None:
         given = raw if isinstance(raw, (list, tuple)) else ()
-        numbers = [Fraction(str(x)) for x in given if not isinstance(x, bool) and isinstance(x, (int, float, Decimal))]
-        if len(numbers) < 2 or len(numbers) < len(given):
+        numbers = [float(x) for x in given if not isinstance(x, bool) and isinstance(x, (int, float, Decimal))]
+        if len(numbers) < 2 or len(numbers) < len(given) or not all(map(isfinite, numbers)):
             fix = "write range = [0.5, 2] for all between, or a list of values: [1, 2, 5]"
             found.append(Diagnostic(path, f"two numbers or more are needed here, not {shown(raw)}", fix))
             return None

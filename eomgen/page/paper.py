@@ -239,7 +239,7 @@ NAMED = (
 TYPST_SIGNS = dict(zip(NAMED, "∂∑⋅×±≤≥≠≈∞→∫…⋯…∘⟨⟩ℓ∇∗⋆∙†∥⟂ℏ′⋮⋱", strict=True))
 TYPST_SIGNS |= {"quad": "quad", "qquad": "quad quad", **dict.fromkeys(("lvert", "rvert", "mid"), r"\|")}
 TYPST_SIGNS |= {"lbrace": r"\{", "rbrace": r"\}", "lbrack": r"\[", "rbrack": r"\]"}
-WORDS = "sin cos tan sinh cosh tanh arcsin arccos arctan ln log exp min max det".split()
+WORDS = "sin cos tan sinh cosh tanh arcsin arccos arctan ln log exp min max sup inf lim det".split()
 SPACES = {",": "thin", ":": "med", ";": "thick", " ": "thick", "!": ""}
 ACCENTS = {"dot": "dot", "ddot": "dot.double", "dddot": "dot.triple", "vec": "arrow", "bar": "macron"}
 ACCENTS |= {"hat": "hat", "widehat": "hat", "tilde": "tilde", "widetilde": "tilde", "overline": "overline"}
@@ -379,7 +379,7 @@ class _Reader:
         raise UnknownCommand(f"\\begin{{{name}}}")
 
 
-SCRIPTED = re.compile(r"\s*\{[^{}]*[\^_]")  # letters of another type with an exponent or an index: m/s^2
+SCRIPTED = re.compile(r"\s*\{(?:[^{}\\]|\\.)*?[\^_]")  # letters of another type with an exponent or an index: m/s^2
 LEADING = re.compile(r"^(& ?(?:quad)?) ([+-])")  # a sign that goes on with the row above stands apart from its term
 
 STRUCTURES: dict[str, Callable[[_Reader], str]] = {
