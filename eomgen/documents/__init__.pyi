@@ -35,41 +35,15 @@ from eomgen.documents.document import plain_document as plain_document
 
 # The document with symbols for names that are not the model's: of its reactions
 from eomgen.documents.document import with_symbols as with_symbols
-from eomgen.documents.drawing import ARROW as ARROW
 from eomgen.documents.drawing import INK as INK
 from eomgen.documents.drawing import LOAD as LOAD
 from eomgen.documents.drawing import REACTION as REACTION
-from eomgen.documents.drawing import PagePoint as PagePoint
-
-# A plane system in one configuration, in numbers
-from eomgen.documents.drawing import Sketch as Sketch
-
-# An arrow whose tip is at a place; `outward`: that begins there (velocities, displacements)
-from eomgen.documents.drawing import arrow as arrow
 
 # One stroke, in its layer
 from eomgen.documents.drawing import artist_of as artist_of
 
-# A load along a line: arrows whose tips are on it, their tails joined
-from eomgen.documents.drawing import distributed as distributed
-
-# Bodies, wires, hinges and supports on matplotlib axes; the axes have equal scales and no frame
-from eomgen.documents.drawing import draw_model as draw_model
-
-# True if an arrow that begins at its place meets fewer lines than one that ends there
-from eomgen.documents.drawing import is_freer_outward as is_freer_outward
-
 # The corners of the picture: all that is drawn, but for tracks, which go on
 from eomgen.documents.drawing import limits as limits
-
-# A couple: three quarters of a circle with an arrow, counter-clockwise for a positive sense
-from eomgen.documents.drawing import moment_arc as moment_arc
-
-# A name written along a line; the others keep off it
-from eomgen.documents.drawing import name_along as name_along
-
-# One more name of a model that is drawn: it is placed where it covers no other one
-from eomgen.documents.drawing import name_beside as name_beside
 
 # A name of a picture in its box
 from eomgen.documents.drawing_on_a_page import FlatName as FlatName
@@ -301,6 +275,16 @@ from eomgen.documents.sheet import question_steps as question_steps
 
 # Step with the words of the problem
 from eomgen.documents.sheet import statement_step as statement_step
+from eomgen.documents.sketch import PagePoint as PagePoint
+
+# A system in one configuration, in numbers
+from eomgen.documents.sketch import Sketch as Sketch
+
+# A sketch on matplotlib axes, which have equal scales and no frame
+from eomgen.documents.sketch import draw_model as draw_model
+
+# A name written along a line; the others keep off it
+from eomgen.documents.sketch import name_along as name_along
 
 # A scene in space on matplotlib axes; `show` sets it to another of its frames
 from eomgen.documents.space_drawing import SpacePicture as SpacePicture

@@ -21,6 +21,7 @@ from eomgen.documents.drawing import (
     LINES,
     MARGIN,
     NARROWEST,
+    OWN_COLORS,
     RANKS,
     SMALLEST,
     draw,
@@ -51,6 +52,7 @@ SHADES = 24  # of a colour
 PADDED = 12  # corners; where a facet has more they are drawn one by one
 LIGHT = np.array([0.35, -0.5, 0.79])
 CLEAR = {"inertia": 0.35, "track": 0.12, "hole": 0.2}  # how much of what is behind these hide
+THIN = ("cylinder",)  # roles of faces that no name should cover
 TOWARDS = 0.02  # lines lie so much nearer than the faces around them, of the extent
 
 
@@ -220,7 +222,7 @@ class SpaceView:
         return _sorted_corners([part.corners for part in parts], order), inks
 
     def _color(self, stroke: Stroke) -> str:
-        own = self.colors.get(stroke.of) if stroke.role in ("body", "inertia") else None
+        own = self.colors.get(stroke.of) if stroke.role in OWN_COLORS else None
         return own or LINES[stroke.role][0]
 
     @cached_property
@@ -276,8 +278,8 @@ class SpaceView:
 
     def lines(self, frame: int) -> list[np.ndarray]:
         """Lines that names should not cover."""
-        paths = [s.path[frame].reshape(-1, 3) @ self.view.T[:, :2] for s in self.drawing.strokes if not s.faces]
-        return paths
+        shown = [s for s in self.drawing.strokes if not s.faces or s.role in THIN]
+        return [s.path[frame].reshape(-1, 3) @ self.view.T[:, :2] for s in shown]
 
 
 class SpacePicture:
@@ -332,15 +334,18 @@ def _rgb(color: str) -> np.ndarray:
     return np.array(to_rgb(color))
 
 
-def draw_space(panel: Any, drawing: Drawing, notation: Notation) -> SpacePicture:
+def draw_space(
+    panel: Any, drawing: Drawing, notation: Notation, colors: Mapping[str, str] | None = None
+) -> SpacePicture:
     """A scene in space at its first frame, on matplotlib axes with equal scales and no frame.
 
     Args:
         notation: typesetting of the names of the model.
+        colors: of bodies and members that have one of their own.
     """
     from eomgen.documents.letters import NamesArtist
 
-    picture = SpacePicture(panel, drawing)
+    picture = SpacePicture(panel, drawing, colors)
     picture.show(0)
     panel.add_artist(NamesArtist(tuple(picture.names(0, notation)), picture.lines(0)))
     return picture

@@ -60,6 +60,9 @@ from eomgen.model.constraints.strand import Stop as Stop
 # The straight string between two stops
 from eomgen.model.constraints.strand import Strand as Strand
 
+# The strand that touches both
+from eomgen.model.constraints.strand import common_tangent as common_tangent
+
 # A constraint, or the joint of a body on a path
 from eomgen.model.contacts import Contact as Contact
 

@@ -59,6 +59,12 @@ from eomgen.proof.drawn_panels import DrawnPanel as DrawnPanel
 # Its panels, bars of colours left out
 from eomgen.proof.drawn_panels import panels_of as panels_of
 
+# A force, a couple or a line load as it is drawn
+from eomgen.proof.drawn_structure import ReportedPush as ReportedPush
+
+# Check of all arrows of a picture together
+from eomgen.proof.drawn_structure import structure_drawn as structure_drawn
+
 # Check that the values set in each run are of their ranges and laws
 from eomgen.proof.drawn_values import drawn_otherwise as drawn_otherwise
 
@@ -167,6 +173,9 @@ from eomgen.proof.runs import answered_otherwise as answered_otherwise
 # Check the equations of motion, the small motions against differences of these, and what is reported of them
 from eomgen.proof.small_motions import certify_small_motions as certify_small_motions
 
+# Check of every panel of components of a beam in space
+from eomgen.proof.space_sections import space_sections_drawn as space_sections_drawn
+
 # States in motion at which every constraint holds, positions and speeds, by where dependent coordinates are free
 from eomgen.proof.states import consistent_states as consistent_states
 
@@ -175,6 +184,9 @@ from eomgen.proof.structure import certify_structure as certify_structure
 
 # Check of every panel titled N, V or M of a body, or influence line
 from eomgen.proof.structure import diagrams_drawn as diagrams_drawn
+
+# Every symbol with 50 digits
+from eomgen.proof.structure import state_of as state_of
 
 # An equation with its verdict
 from eomgen.proof.verdicts import JudgedEquation as JudgedEquation

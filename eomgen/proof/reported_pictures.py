@@ -21,7 +21,7 @@ import numpy as np
 
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics import BodyLink, SystemScene
-from eomgen.model import Element, PointForce, PushAt, PushOfMass, Shape, TouchingRound, pose_of
+from eomgen.model import Couple, Element, PointForce, PushAt, PushOfMass, Shape, TouchingRound, pose_of
 from eomgen.proof.at_a_state import NumericState
 from eomgen.proof.check import Check, Tally
 from eomgen.proof.declared_loads import placed_pushes
@@ -370,7 +370,7 @@ class _Shown(InNumbers):
         scales: list[tuple[str, float]] = []
         largest = 0.0
         for arrow in self.picture.arrows:
-            known = self._force(arrow) if arrow.role == role == "force" else self._reaction(arrow.of)
+            known = self._force(arrow) if arrow.role == role == "force" else self._reaction(arrow)
             if arrow.role != role or known is None:
                 continue
             at, force = known
@@ -414,8 +414,11 @@ class _Shown(InNumbers):
     def _away(self, arrow: ReportedArrow, at: np.ndarray) -> float:
         return float(min(np.linalg.norm(arrow.tip - at), np.linalg.norm(arrow.begin - at)))
 
-    def _reaction(self, owner: str) -> tuple[np.ndarray | None, np.ndarray] | None:
+    def _reaction(self, arrow: ReportedArrow) -> tuple[np.ndarray | None, np.ndarray] | None:
         """(place, resultant) of the reactions of a joint or constraint; None where some have no single value."""
+        owner = arrow.of
+        if any(row.component == "tension" for row in self.system.constraints.rows if row.constraint == owner):
+            return self._of_string(arrow)
         names = [f"reaction_{axis}({owner})" for axis in "xyz"[: self.d]]
         found = [self.numeric.reactions.get(name) for name in names]
         if any(x is None or not np.isfinite(x) for x in found):
@@ -424,6 +427,33 @@ class _Shown(InNumbers):
         if owner in self.motion.index:
             at = self.placed(self.motion.position((owner, self.motion.link(owner).point)))
         return at, np.array([float(x) for x in found if x is not None])
+
+    def _of_string(self, arrow: ReportedArrow) -> tuple[np.ndarray | None, np.ndarray] | None:
+        """(place, tension) of the end of a string or link that is nearest to what an arrow shows.
+
+        On a pulley its place is as far from the centre as its moment about that has it.
+        """
+        rows = [row for row in self.system.constraints.rows if row.constraint == arrow.of]
+        found: list[tuple[float, np.ndarray, np.ndarray]] = []
+        for number, row in enumerate(rows, start=1):
+            names = (f"tension({arrow.of}, {number})", *((f"tension({arrow.of})",) if len(rows) == 1 else ()))
+            size = next((self.numeric.reactions[name] for name in names if name in self.numeric.reactions), np.nan)
+            if not np.isfinite(float(size)):
+                return None
+            for push, beside in zip(row.pushes, (*row.pushes[1:], None), strict=True):
+                if not isinstance(push, PointForce) or push.place[0] is None:
+                    continue
+                turns = beside.couple if isinstance(beside, Couple) else (0, 0, 0)
+                arm = float(np.linalg.norm([float(x) for x in self.at(turns)]))
+                center = self.placed(self.motion.position(push.place))
+                pushed = self.carried(push.axes, self.vector(push.force), direction=True)
+                force = float(size) * np.array(pushed[: self.d], dtype=float)
+                off = arrow.begin - center
+                at = center + off * (arm / (float(np.linalg.norm(off)) or 1.0)) if arm else center
+                along = arrow.tip - arrow.begin
+                apart = np.linalg.norm(along) * np.linalg.norm(force) - along @ force
+                found.append((float(self._away(arrow, at) + apart), at, force))
+        return min(found, key=lambda each: each[0])[1:] if found else None
 
     def _of_contact(self, owner: str) -> tuple[np.ndarray | None, np.ndarray] | None:
         """(place, resultant) of the rows of a contact: each along its own force, friction along its tangents."""

@@ -221,7 +221,7 @@ class _Proof:
         if body not in self._loads:
             loads = MemberLoads(self.found.balance, body, forces.sizes)
             actions = [
-                (self._x(forces.axis, place), self.numbers(place), self.numbers(force), self.one(couple))
+                (self._x(forces.axis, place), self.numbers(place), self.numbers(force), self.one(couple[2]))
                 for place, force, couple in loads.actions
             ]
             spreads = []

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from itertools import pairwise
 from typing import Any
 
 from eomgen.mechanics.dynamics import System
@@ -32,12 +33,22 @@ def body_marks(system: System, link: BodyLink, frame: int) -> list[Mark]:
     marks: list[Mark] = []
     if part.shape is not None and not part.shape.is_point:
         marks = [Mark(form, frame, "body", link.name) for form in seen(system, part.shape.forms(system.scope.value))]
+    elif part.parts is None and is_rotor(system, link):
+        marks = [Mark(SymbolForm("rotor", link.point, Vector((1, 0, 0))), frame, "body", link.name)]
     elif part.parts is None:
         marks = skeleton(system, link, frame)
         point = part.shape is not None and part.shape.is_point
         if (point or not marks) and not is_block(system, link):
             marks.append(Mark(PointForm(Vector.ZERO), frame, "body", link.name))
     return marks
+
+
+def is_rotor(system: System, link: BodyLink) -> bool:
+    """True if a body in the plane turns on a hinge, has inertia and no lengths."""
+    part = system.scope.model.bodies[link.name]
+    bare = part.shape is None and len(places_of_body(system, link)) < 2
+    plane = system.scope.model.space == "plane"
+    return plane and bare and _turns(link) and not is_zero(system.scope.mass_properties(link.name).I[2][2])
 
 
 def is_block(system: System, link: BodyLink) -> bool:
@@ -49,6 +60,13 @@ def is_block(system: System, link: BodyLink) -> bool:
     slides = len(link.S) < 3 and sum(all(map(is_zero, w)) for w, _ in link.S) == 1
     seated = link.joint is not None and link.joint.carries_reaction and link.joint.straight
     return formless and slides and seated and link.parent == GROUND
+
+
+def is_cylinder(link: BodyLink) -> bool:
+    """True if a body slides on another one by the force of a drive: its rod comes out of a cylinder."""
+    alone = len(link.S) == 1 and all(map(is_zero, link.S[0][0]))
+    efforts = () if link.joint is None or link.parent == GROUND else link.joint.efforts()
+    return alone and any(effort is not None and effort.drive is not None for effort in efforts)
 
 
 def wedge_of(system: System, link: BodyLink) -> PolygonForm | None:
@@ -102,14 +120,29 @@ def skeleton(system: System, link: BodyLink, frame: int) -> list[Mark]:
     if system.scope.model.space == "plane":
         wedge = wedge_of(system, link)
         return [Mark(form, frame, "body", link.name) for form in ([wedge] if wedge else _plate(system, places))]
-    rods = [Mark(RodForm(places[0], place), frame, "body", link.name) for place in places[1:]]
+    pairs = pairwise(line_of(system, link)) if _is_bent(system, link) else ((places[0], place) for place in places[1:])
+    rods = [Mark(RodForm(a, b), frame, "body", link.name) for a, b in pairs]
     if gimbal := gimbal_of(system, link):
         symbol, axis = gimbal
         pins = Mark(SymbolForm(f"{symbol}_pins", link.point, link.S[0][0]), frame, "body", link.name)
         return [Mark(SymbolForm(symbol, link.point, axis), frame, "body", link.name), pins]
     if shaft := shaft_of(system, link):
         return [Mark(SymbolForm("shaft", link.point, shaft), frame, "body", link.name)]
+    if not rods and is_cylinder(link):
+        return [Mark(PointForm(link.point), frame, "body", link.name)]
     return [*rods, *inertia_mark(system.scope.mass_properties(link.name), frame, link.name)]
+
+
+def _is_bent(system: System, link: BodyLink) -> bool:
+    """True if a body in space goes from point to point: it says so by its line, or is part of a structure."""
+    part = system.scope.model.bodies[link.name]
+    return bool(part.line) or not system.symbols.q
+
+
+def line_of(system: System, link: BodyLink) -> list[Vector]:
+    """The points along a body: those of its line, else all its places in order."""
+    part, own = system.scope.model.bodies[link.name], system.motion.points[link.name]
+    return [own[name.rpartition(".")[2]] for name in part.line or ()] or places_of_body(system, link)
 
 
 def gimbal_of(system: System, link: BodyLink) -> tuple[str, Vector] | None:
@@ -213,11 +246,19 @@ def inertia_mark(mass: MassProperties, frame: int, body: str) -> list[Mark]:
     return [Mark(EllipsoidForm(mass.com, Vector((size[0], size[1], size[2]))), frame, "inertia", body)]
 
 
+def is_a_rotor(mark: Mark) -> bool:
+    """True of the symbol of a rotor."""
+    return isinstance(mark.form, SymbolForm) and mark.form.symbol == "rotor" and mark.role == "body"
+
+
 def without_veils(marks: Sequence[Mark], *, alone: bool) -> list[Mark]:
-    """An ellipsoid of inertia stands for a body that nothing else shows, or about the rods of the only body.
+    """An ellipsoid of inertia stands for a body that nothing else shows, or about the rods of the only body; the symbol
+    of a rotor for one whose rim no string or surface shows.
 
     Moments that a model declares say little of its size: ellipsoids would hide how the bodies are connected.
     """
+    rims = {mark.of for mark in marks if mark.role == "rim" or (mark.role == "body" and mark.form.kind == "arc")}
+    marks = [mark for mark in marks if not (is_a_rotor(mark) and mark.of in rims)]
     shown = {mark.of for mark in marks if mark.role == "body" and not (alone and isinstance(mark.form, RodForm))}
     return [mark for mark in marks if mark.role != "inertia" or mark.of not in shown]
 

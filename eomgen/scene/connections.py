@@ -6,14 +6,14 @@ Joints, constraints and force elements -> marks: hinges and supports, strings, m
 from __future__ import annotations
 
 import math
-from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
-from itertools import pairwise
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+from itertools import combinations, pairwise
 from typing import Any
 
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import Axes, Component
-from eomgen.mechanics.kinematics import GROUND, BodyLink, Motion, SystemScene
+from eomgen.mechanics.kinematics import GROUND, BodyLink, SystemScene
 from eomgen.model import (
     ArcForm,
     BodyLine,
@@ -29,17 +29,14 @@ from eomgen.model import (
     Strand,
     TouchingPoint,
     TouchingRound,
+    common_tangent,
     unit,
 )
-from eomgen.scene.bodies import gimbal_of, is_block, parameters_as_drawn, seen, shaft_of, wedge_of
+from eomgen.scene.bodies import gimbal_of, is_block, is_cylinder, parameters_as_drawn, seen, shaft_of, wedge_of
 from eomgen.scene.forms import (
-    ArrowForm,
-    CoupleForm,
     CylinderForm,
     DamperForm,
-    FieldForm,
     LabelForm,
-    LoadForm,
     RodForm,
     SpringForm,
     SymbolForm,
@@ -48,16 +45,14 @@ from eomgen.scene.forms import (
 )
 from eomgen.scene.scene import Mark
 from eomgen.symbolic.expression import (
+    Expression,
     Fraction,
-    Matrix,
     Node,
     Pose,
     Scalar,
     Vector,
     function,
     is_zero,
-    over,
-    substituted,
     symbols_of,
 )
 from eomgen.symbolic.numeric import FLOAT, evaluate
@@ -96,6 +91,8 @@ def _guided(system: System, link: BodyLink, frame: int, turns: bool, own: Vector
     """A block on its guide: on the ground's hatched, above it; a body that hangs on a spring has no other guide."""
     part, grounded = system.scope.model.bodies[link.name], link.parent == GROUND
     above = 0 if grounded else link.parent + 1
+    if is_cylinder(link):
+        return []
     if guides := link.joint.guides(system.scope.value, link.before):
         return [Mark(form, above, "track", link.name) for form in guides]
     along = link.before.R @ (link.relative.R @ own)
@@ -128,7 +125,7 @@ def _space_joint(
 ) -> list[Mark]:
     kinds = {(0, 0): "weld", (1, 0): "hinge", (0, 1): "slider", (1, 1): "tube", (2, 0): "cross", (3, 0): "ball"}
     symbol = kinds.get((len(turning), len(sliding)))
-    if symbol is None or gimbal_of(system, link) or shaft_of(system, link):
+    if symbol is None or gimbal_of(system, link) or shaft_of(system, link) or is_cylinder(link):
         return []
     along = turning[0] if turning else sliding[0] if sliding else None
     return [
@@ -152,9 +149,13 @@ def _reach(system: System, link: BodyLink, slides: bool) -> list[Mark]:
 
 
 def _joint_elements(system: System, link: BodyLink, frame: int, turns: bool) -> list[Mark]:
-    """Springs and dampers in a joint: along a sliding direction, a spiral where it turns."""
+    """Springs and dampers in a joint: along a sliding direction, a spiral where it turns; of a drive the cylinder."""
     efforts = [effort for effort in link.joint.efforts() if effort is not None]
     springs, dampers = (any(getattr(e, name) is not None for e in efforts) for name in ("stiffness", "damping"))
+    if is_cylinder(link):
+        a, b = system.motion.links[link.parent].pose.point(link.before.p), link.pose.point(link.point)
+        sprung = elements(a, b, True, False, link.name, BESIDE) if springs else []
+        return [*sprung, Mark(CylinderForm(a, b), 0, "cylinder", link.name)]
     if not (springs or dampers):
         return []
     if turns:
@@ -227,12 +228,14 @@ def _sides(system: System) -> dict[str, int]:
 
 def constraint_marks(system: System) -> list[Mark]:
     """Strings, members of trusses, links, tracks, hinges and supports."""
-    found = [*_members(system)]
+    found = [*_members(system), *_belts(system)]
     for name, constraint in system.scope.model.constraints.items():
         scene = SystemScene(system.motion, f"constraints.{name}")
         rows = [row for row in system.constraints.rows if row.constraint == name]
         if strands := constraint.strands_at(scene):
-            found += [*string_marks(strands, name), *_rims(system, strands)]
+            found += [*string_marks(strands, name), *_rims(system, strands), *_fastened(system, strands, name)]
+        elif (wheels := constraint.wheels()) is not None:
+            found += _belt_of(system, scene, wheels, name)
         elif (meeting := constraint.meeting()) is not None:
             found += _met(system, meeting, rows, name)
         elif not any(row.part for row in rows):
@@ -261,6 +264,66 @@ def string_marks(strands: Sequence[Strand], of: str) -> list[Mark]:
             r = function("abs", stop.offset)
             found.append(Mark(ArcForm(stop.center, r, r, close="chord"), 0, "joint", of))
     return found
+
+
+def _fastened(system: System, strands: Sequence[Strand], of: str) -> Iterator[Mark]:
+    """The walls on which a string ends at the ground."""
+    for strand, stop in ((strands[0], strands[0].first), (strands[-1], strands[-1].second)):
+        if stop.body is None and not stop.round:
+            near, far = strand.ends if stop is strand.first else strand.ends[::-1]
+            yield from walls(system, (near,), far, of)
+
+
+def _belt_of(system: System, scene: SystemScene, wheels: tuple[str, str, Expression], of: str) -> list[Mark]:
+    """The belt that two round wheels need which turn in one sense, apart, as their radii have it; in the plane."""
+    *bodies, ratio = wheels
+    rims = [next(iter(_arcs(system, body)), None) for body in bodies]
+    if system.scope.model.space == "space" or any(r is None for r in rims):
+        return []
+    centers = [scene.place(f"{body}.origin") for body in bodies]
+    reach = scene.position(centers[1]) - scene.position(centers[0])
+    sizes = [scene.value_at_start(x) for x in (reach @ reach, *rims)]
+    apart = all(x is not None for x in sizes) and sizes[0] > (sizes[1] + sizes[2]) ** 2
+    if not apart or not is_zero(scene.value(ratio) * rims[0] - rims[1]):
+        return []
+    first, second = (Stop(scene, place, r) for place, r in zip(centers, rims, strict=True))
+    there, back = common_tangent(scene, first, second), common_tangent(scene, second, first)
+    forms = (
+        LineForm(there.ends),
+        LineForm(back.ends),
+        _wrapped(second, there.d, back.d),
+        _wrapped(first, back.d, there.d),
+    )
+    return [Mark(form, 0, "string", of) for form in forms]
+
+
+@dataclass(frozen=True)
+class _WoundEnd:
+    """An end of a string that lies on something round: where it arrives there, clockwise if its offset is positive."""
+
+    of: str
+    stop: Stop
+    d: Vector
+    offset: Scalar
+
+    def leaves_to(self, other: _WoundEnd) -> bool:
+        """True if a string that arrives here could leave, round the same thing in the same sense, by the other end."""
+        return self.of != other.of and self.stop.place == other.stop.place and is_zero(self.offset + other.offset)
+
+
+def _belts(system: System) -> Iterator[Mark]:
+    """The arcs that join two strings on the same pulley as one belt; in the plane."""
+    ends: list[_WoundEnd] = []
+    for name, constraint in system.scope.model.constraints.items() if system.scope.model.space == "plane" else ():
+        strands = constraint.strands_at(SystemScene(system.motion, f"constraints.{name}"))
+        if strands and strands[0].first.round:
+            ends.append(_WoundEnd(name, strands[0].first, -strands[0].d, -strands[0].first.offset))
+        if strands and strands[-1].second.round:
+            ends.append(_WoundEnd(name, strands[-1].second, strands[-1].d, strands[-1].second.offset))
+    for one, other in combinations(ends, 2):
+        if one.leaves_to(other):
+            stop = replace(one.stop, offset=one.offset)
+            yield Mark(_wrapped(stop, one.d, -other.d), 0, "string", one.of)
 
 
 def _rims(system: System, strands: Sequence[Strand]) -> Iterator[Mark]:
@@ -454,167 +517,3 @@ def _arrow(link: BodyLink, q: Node) -> SymbolForm:
     """Arrow round the joint, or along its sliding direction."""
     w, v = next(column for s, column in zip(link.s, link.S, strict=False) if q in symbols_of((s,)))
     return SymbolForm("shifted", link.point, v) if all(map(is_zero, w)) else SymbolForm("turned", link.point)
-
-
-# -------- applied ---------------------------------------------------------------------------------------------
-# Loads, reactions -> marks: arrows of what is applied, the field of gravity, forces of joints and constraints.
-
-
-def field_marks(system: System) -> list[Mark]:
-    """The direction of the weight."""
-    g = system.loads.fields
-    return [] if all(map(is_zero, g)) else [Mark(FieldForm(g, "g"), 0, "axes", "")]
-
-
-def applied_marks(system: System) -> Iterator[Mark]:
-    """Forces and couples at bodies, but for weights, springs and dampers, and drives of joints."""
-    motion, model = system.motion, system.scope.model
-    for applied in system.loads.applied:
-        if model.forces[applied.name].element is not None:
-            continue
-        for spread in applied.spread:
-            a, b = motion.position(spread.start), motion.position(spread.end)
-            ends = _known(system, spread.at_start), _known(system, spread.at_end)
-            yield Mark(LoadForm(a, b, *ends, applied.name), 0, "force", applied.name)
-        for load in () if applied.spread else applied.loads:
-            if isinstance(load, PointForce) and load.place[0] is not None:
-                f = _known(system, motion.in_ground_axes(load.force, load.axes))
-                at = motion.position(load.place)
-                yield Mark(ArrowForm(at, f, "N", text=applied.name), 0, "force", applied.name)
-            elif isinstance(load, Couple):
-                at = motion.position(load.place or (load.body, Vector.ZERO))
-                couple = _known(system, motion.in_ground_axes(load.couple, load.axes))
-                yield Mark(CoupleForm(at, couple, applied.name), 0, "force", applied.name)
-    yield from _drives(system)
-
-
-def _given(system: System) -> Iterator[Mark]:
-    """Weights at the mass centres, and what springs and dampers do to the bodies at their ends."""
-    motion, model = system.motion, system.scope.model
-    for weight in system.loads.weights:
-        yield Mark(_from(motion.position(weight.place), weight.force), 0, "force", f"weight({weight.place[0]})")
-    for applied in system.loads.applied:
-        if model.forces[applied.name].element is None:
-            continue
-        for load in applied.loads:
-            if isinstance(load, PointForce) and load.place[0] is not None:
-                yield Mark(_from(motion.position(load.place), load.force), 0, "force", applied.name)
-    for effort in system.loads.efforts:
-        link = motion.link(effort.body)
-        w, v = link.S[effort.variable]
-        declared = None if link.joint is None else link.joint.efforts()[effort.variable]
-        drive = 0 if declared is None or declared.drive is None else system.scope.value(declared.drive)
-        size = effort.effort - drive
-        if all(map(is_zero, w)) and not is_zero(size):
-            along = link.pose.R @ (over(size, v @ v) * v)
-            yield Mark(_from(link.pose.point(link.point), along), 0, "force", f"spring({effort.body})")
-
-
-def _from(at: Vector, force: Vector) -> ArrowForm:
-    return ArrowForm(at, force, "N", outward=True)
-
-
-def _known(system: System, v: Vector) -> Vector:
-    """A load in which an unknown number, to be found, is drawn as 1."""
-    return Vector(substituted(v, dict.fromkeys(system.symbols.unknowns.values(), 1)))
-
-
-def _drives(system: System) -> Iterator[Mark]:
-    """The drives of joints, on the child."""
-    for link in system.motion.links:
-        efforts = () if link.joint is None else link.joint.efforts()
-        for (w, v), effort in zip(link.S, efforts, strict=False):
-            if effort is None or effort.drive is None:
-                continue
-            value = system.scope.value(effort.drive)
-            at = link.pose.point(link.point)
-            turns = not all(map(is_zero, w))
-            along = link.pose.R @ (value * (w if turns else v))
-            form = CoupleForm(at, along) if turns else ArrowForm(at, along, "N", outward=True)
-            yield Mark(form, 0, "force", link.name)
-
-
-@dataclass(frozen=True)
-class Resultant:
-    """Force of a joint or constraint on the body that it holds: the sum of its components along unit vectors.
-
-    Args:
-        owner: the constraint, or the body whose joint it is.
-        at: the point where it acts, ground axes [m].
-        units: of each component by its name, `reaction_x(A)` or `reaction_n(wall)`, the direction, ground axes.
-    """
-
-    owner: str
-    at: Vector
-    units: Mapping[str, Vector]
-
-    def of(self, values: Mapping[str, Scalar]) -> Vector:
-        """The resultant, ground axes [N]."""
-        total = Vector.ZERO
-        for name, along in self.units.items():
-            total = total + values[name] * along
-        return total
-
-
-def resultants(system: System, names: Container[str]) -> Iterator[Resultant]:
-    """Resultants of the joints and constraints all of whose forces are among the names.
-
-    Components along x, y, z are whole as they are. Others, normal forces and friction, are each along what a unit of it
-    does to the first-named body, where all of them act at one place.
-    """
-    if not names:
-        return
-    motion = system.motion
-    along = "xy" if system.scope.model.space == "plane" else "xyz"
-    owners: dict[str, list[Component]] = {}
-    for component in Axes(motion).components_of(system):
-        if component.kind != "drive":
-            owners.setdefault(component.owner, []).append(component)
-    for owner, components in owners.items():
-        seat, units = (
-            _seat(system, owner),
-            {f"reaction_{axis}({owner})": e for axis, e in zip(along, Matrix.IDENTITY, strict=False)},
-        )
-        if seat is not None and all(name in names for name in units):
-            yield Resultant(owner, motion.position(seat), units)
-        elif (contact := _contact(motion, components)) is not None and all(name in names for name in contact.units):
-            yield contact
-
-
-def _contact(motion: Motion, components: Sequence[Component]) -> Resultant | None:
-    """Resultant of the forces at one place along directions of their own; None of hinges, strings and placed bodies."""
-    owner, on = components[0].owner, components[0].effects[0].link
-    pose, plane = motion.links[on].pose, motion.scope.model.space == "plane"
-    pushes = [(c.label, c.name, c.effects) for c in components]
-    pushes += [(s.label, f"reaction_{s.label}({owner})", s.effects) for c in components for s in c.friction]
-    places: set[Vector] = set()
-    units: dict[str, Vector] = {}
-    for label, name, effects in pushes:
-        mine = [e for e in effects if e.link == on and not all(map(is_zero, e.force))]
-        if not mine and label.startswith("couple"):
-            continue
-        if len(mine) != 1 or name in units or label[:1] not in ("n", "t", "s") or label == "tension":
-            return None
-        (push,) = mine
-        if push.place is None:
-            return None
-        places.add(push.place + (push.beyond or Vector.ZERO))
-        units[name] = push.force if plane else pose.R @ push.force
-    return Resultant(owner, pose.point(places.pop()), units) if len(places) == 1 else None
-
-
-def force_marks(system: System, forces: Iterable[tuple[Resultant, Vector]]) -> Iterator[Mark]:
-    """Weights, forces of springs and dampers, and the resultant force of every joint and constraint, on the body that
-    it holds."""
-    yield from _given(system)
-    for resultant, force in forces:
-        yield Mark(ArrowForm(resultant.at, force, "N"), 0, "reaction", resultant.owner)
-
-
-def _seat(system: System, owner: str) -> tuple[str | None, Vector] | None:
-    """(body, place) at which a joint or constraint acts; None if at no single place."""
-    motion = system.motion
-    if owner in motion.index:
-        return owner, motion.link(owner).point
-    pushes = [push for row in system.constraints.rows if row.constraint == owner for push in row.pushes]
-    return next((push.place for push in pushes if isinstance(push, PointForce)), None)

@@ -18,8 +18,9 @@ import numpy as np
 from eomgen.codegen import compiled, program_of
 from eomgen.mechanics.dynamics import System
 from eomgen.model import Form
-from eomgen.proof import ReportedArrow, ReportedPicture
-from eomgen.scene.connections import Resultant, force_marks, resultants
+from eomgen.proof import ReportedArrow, ReportedPicture, ReportedPush
+from eomgen.scene import plane_strokes, space_strokes
+from eomgen.scene.acting import Resultant, force_marks, resultants
 from eomgen.scene.making import scene_of_system
 from eomgen.scene.scene import ROLES, Mark, Scene, SceneFrame, frames_along, is_moving, plain_number, scalars_of
 from eomgen.scene.strokes import Drawing, SceneNumbers, Stroke
@@ -65,8 +66,9 @@ def _phase_numbers(
     given: dict[Node, np.ndarray] = {}
     if forces:
         arrows: list[tuple[Resultant, Vector]] = []
-        for resultant, force in _resultants(run, phase, times, columns):
-            named = [system.symbols.graph.symbol(f"({axis} of {resultant.owner})") for axis in "xyz"[: len(force)]]
+        for k, (resultant, force) in enumerate(_resultants(run, phase, times, columns)):
+            axes = "xyz"[: len(force)]
+            named = [system.symbols.graph.symbol(f"({axis} of {resultant.owner}, {k})") for axis in axes]
             given |= dict(zip(named, force, strict=True))
             padded: list[Scalar] = [*named, 0]
             arrows.append((resultant, Vector(padded[:3])))
@@ -330,3 +332,39 @@ def _tip(head: Stroke, frame: int) -> np.ndarray:
     """The tip of an arrow's head: in the plane its first place, in space the one that all its faces share."""
     tip: np.ndarray = head.path[frame][0][-1] if head.faces else head.path[frame][0]
     return tip
+
+
+# -- a structure ---------------------------------------------------------------------------------------------------
+
+
+def pushes_reported(drawing: Drawing, numbers: SceneNumbers) -> Iterator[ReportedPush]:
+    """Forces, couples and line loads that the strokes of a drawing show at its first frame, with their words."""
+    table = plane_strokes.TABLE if numbers.scene.plane else space_strokes.TABLE
+    strokes = iter([stroke for stroke in drawing.strokes if stroke.role in ("force", "reaction")])
+    for mark in (mark for mark in numbers.scene.marks if mark.role in ("force", "reaction")):
+        form: Any = mark.form
+        drawn = [next(strokes) for _ in table[type(form)](form, mark, numbers, drawing.sizes)[0]]
+        if form.kind == "load":
+            count = len(drawn) // 2  # and one line more
+            shafts, heads = drawn[: 2 * count : 2], drawn[1 : 2 * count : 2]
+            way, other = (_shaft(shafts[k], heads[k])[1] for k in (0, -1))
+            a, b = (numbers.spot(at, mark)[0] for at in (form.a, form.b))
+            yield ReportedPush(form.text, _three(a), way, end=(_three(b), other))
+        elif form.kind == "couple" and numbers.scene.plane:
+            x, y = (drawn[0].path[0] - numbers.spot(form.at, mark)[0]).T
+            turned = float(np.sum(x[:-1] * y[1:] - x[1:] * y[:-1]))
+            yield ReportedPush(form.text, np.zeros(3), np.array([0.0, 0.0, turned]), turns=True)
+        elif drawn:
+            at, way = _shaft(*drawn[-2:])
+            yield ReportedPush(form.text, at, way, turns=form.kind == "couple")
+
+
+def _shaft(shaft: Stroke, head: Stroke) -> tuple[np.ndarray, np.ndarray]:
+    """(tip, the way to it) of an arrow, 3 each."""
+    tip = _tip(head, 0)
+    return _three(tip), _three(tip - shaft.path[0].reshape(-1, len(tip))[0])
+
+
+def _three(v: np.ndarray) -> np.ndarray:
+    found: np.ndarray = np.array([*v, 0.0][:3])
+    return found

@@ -10,31 +10,25 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations, pairwise
 
-from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import holds_identically
 from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.mechanics.kinematics import GROUND, BodyLink
-from eomgen.model import ArcForm, EllipsoidForm, LineForm, ModelOrPath, PolygonForm, SpreadLoad, is_node
+from eomgen.model import ArcForm, EllipsoidForm, LineForm, ModelOrPath, PolygonForm, is_node
+from eomgen.scene.acting import applied_marks, field_marks
 from eomgen.scene.bodies import body_marks, piece_marks, places_of_body, without_veils
 from eomgen.scene.connections import (
-    applied_marks,
     constraint_marks,
     drive_marks,
-    field_marks,
     force_elements,
     joint_marks,
     ordered,
 )
 from eomgen.scene.forms import (
     AngleForm,
-    ArrowForm,
     AxesForm,
-    CoupleForm,
     DimensionForm,
     LabelForm,
-    LoadForm,
     PointForm,
-    SymbolForm,
 )
 from eomgen.scene.scene import ROLES, Mark, Scene, SceneFrame
 from eomgen.study import model_to_study, study_of
@@ -309,76 +303,20 @@ def _ellipsoid(moments: Sequence[float], m: float, frame: int, body: str) -> Ite
     half = [size * min(math.sqrt(largest / I) if I > 0 else LONGEST_AXIS, LONGEST_AXIS) for I in moments]
     yield Mark(EllipsoidForm(Vector.ZERO, _vector(half)), frame, "inertia", body)
     yield Mark(PointForm(Vector.ZERO), frame, "center", body)
-    for k, length in enumerate(half):
-        end = _vector(BEYOND * length * (i == k) for i in range(3))
-        yield Mark(LineForm((Vector.ZERO - end, end), fine=True), frame, "reaction", body)
-        yield Mark(LabelForm(str(k + 1), end), frame, "axes", body)
+    ends = {str(k + 1): _vector(BEYOND * length * (i == k) for i in range(3)) for k, length in enumerate(half)}
+    yield from axis_marks(body, Vector.ZERO, ends, frame)
+
+
+def axis_marks(body: str, center: Vector, ends: Mapping[str, Vector], frame: int) -> Iterator[Mark]:
+    """Principal axes through a mass centre, each with its number at one end.
+
+    Args:
+        ends: from the centre, by the number.
+    """
+    for number, end in ends.items():
+        yield Mark(LineForm((center - end, center + end), fine=True), frame, "reaction", body)
+        yield Mark(LabelForm(number, center + end), frame, "axes", body)
 
 
 def _vector(v: Iterable[float]) -> Vector:
     return Vector(map(Fraction, v))
-
-
-# -- cut free ----------------------------------------------------------------------------------------------------
-
-
-OWN = ("body", "hole", "inertia", "rim", "member")  # roles of a body itself
-NAMED = ("point", "center")  # roles of what is named on it
-
-
-@dataclass(frozen=True)
-class CutArrow:
-    """A force on a body as it is drawn.
-
-    Args:
-        name: the letter next to it.
-        at, vector: ground axes; the longest vector becomes the longest arrow.
-        turns: it is a couple.
-        outward: it begins at its place, and does not end there.
-        cut: a joint or constraint was cut through there.
-    """
-
-    name: str
-    at: Vector
-    vector: Vector
-    turns: bool
-    outward: bool
-    cut: bool
-
-
-def scene_of_cut_body(scene: Scene, body: str, arrows: Iterable[CutArrow] = ()) -> Scene:
-    """The scene of one body by itself, with its forces; loads along lines as they are."""
-    arrows = tuple(arrows)
-    kept = [mark for mark in scene.marks if _belongs(mark, body)]
-    spread = list(_spread(scene, body)) if arrows else []
-    lines = {mark.of for mark in spread}
-    marks = (*kept, *spread, *(mark for each in arrows if each.name not in lines for mark in _marks(each)))
-    places = dict.fromkeys(each.at for each in arrows if each.cut and not each.turns)
-    cuts = (Mark(SymbolForm("hinge" if scene.plane else "ball", at), 0, "joint", "") for at in places)
-    points = tuple(point for point in scene.points if point[0].startswith(f"{body}."))
-    return replace(scene, marks=ordered((*marks, *cuts), ROLES), points=points)
-
-
-def _belongs(mark: Mark, body: str) -> bool:
-    if mark.role in OWN:
-        return mark.of == body
-    return mark.role in NAMED and mark.of.partition(".")[0] == body
-
-
-def _marks(arrow: CutArrow) -> Iterator[Mark]:
-    role = "reaction" if arrow.cut else "force"
-    if arrow.turns:
-        yield Mark(CoupleForm(arrow.at, arrow.vector, arrow.name), 0, role, arrow.name)
-    else:
-        yield Mark(ArrowForm(arrow.at, arrow.vector, "1", arrow.outward, arrow.name), 0, role, arrow.name)
-
-
-def _spread(scene: Scene, body: str) -> Iterator[Mark]:
-    """Loads along lines of a body."""
-    motion = scene.system.motion
-    for applied in scene.system.loads.applied:
-        for load in applied.spread:
-            if isinstance(load, SpreadLoad) and load.start[0] == body:
-                ends = motion.position(load.start), motion.position(load.end)
-                form = LoadForm(*ends, load.at_start, load.at_end, applied.name)
-                yield Mark(form, 0, "force", applied.name)

@@ -11,6 +11,7 @@ from eomgen.model import ArcForm, LineForm, PolygonForm
 from eomgen.scene import forms
 from eomgen.scene.scene import Mark, plain_number
 from eomgen.scene.strokes import (
+    ARROW,
     SYMBOL,
     DrawerTable,
     Drawing,
@@ -25,14 +26,18 @@ from eomgen.scene.symbols import PLANE, TEETH
 from eomgen.symbolic.expression import Vector
 
 HEAD = np.array([[0.0, 0.0], [-1.1, 0.36], [-0.85, 0.0], [-1.1, -0.36], [0.0, 0.0]])  # of an arrow, its tip at 0
+BARREL, MOST_BARREL = 0.55, 0.9  # of the longest way, and of each, that the cylinder of a drive takes
+SMALL = 0.6  # heads of a line load, of those of a force
 ROUND = 73  # points of a circle
 LONGEST = 1.5  # of the extent, a length that is drawn
 LEAST = 0.03  # of an angle that is drawn [rad]
 
 
-def plane_drawing(numbers: SceneNumbers, *, dimensions: bool = False, symbol: float = SYMBOL) -> Drawing:
+def plane_drawing(
+    numbers: SceneNumbers, *, dimensions: bool = False, symbol: float = SYMBOL, arrow: float = ARROW
+) -> Drawing:
     """The strokes of a scene in the plane."""
-    return drawn_with(TABLE, numbers, dimensions=dimensions, symbol=symbol)
+    return drawn_with(TABLE, numbers, dimensions=dimensions, symbol=symbol, arrow=arrow)
 
 
 def _stroke(path: np.ndarray, mark: Mark, **look: bool) -> Stroke:
@@ -94,21 +99,32 @@ def _damper(form: forms.DamperForm, mark: Mark, numbers: SceneNumbers, sizes: Pi
 
 
 def _cylinder(form: forms.CylinderForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
-    """A closed cylinder with its piston, and a rod that comes out of it."""
-    nan = math.nan
-    share = np.array(
-        [0.0, 0.06, nan, 0.06, 0.6, 0.6, 0.06, 0.06, nan, 0.5, 0.5, nan, 0.6, 1.0, 1.0, 0.6, nan, 1.0, 1.0]
-    )
-    aside = np.array(
-        [0.0, 0.0, nan, 0.6, 0.6, -0.6, -0.6, 0.6, nan, 0.6, -0.6, nan, 0.2, 0.2, -0.2, -0.2, nan, 0.0, 0.0]
-    )
-    return [_stroke(_between(form, mark, numbers, sizes, share, aside), mark)], []
+    """A closed cylinder of one length with its piston, and a rod that comes out of it."""
+    end = barrel(numbers.spot(form.b, mark) - numbers.spot(form.a, mark))[:, None]
+    nan, one, c, p = np.full_like(end, math.nan), np.ones_like(end), 0.06 * end, 0.85 * end
+    share = [0 * end, c, nan, c, end, end, c, c, nan, p, p, nan, end, one, one, end, nan, one, one]
+    gap = math.nan
+    barrel_aside, piston, rod = [0.6, 0.6, -0.6, -0.6, 0.6], [0.6, -0.6], [0.2, 0.2, -0.2, -0.2]
+    aside = np.array([0.0, 0.0, gap, *barrel_aside, gap, *piston, gap, *rod, gap, 0.0, 0.0])
+    return [_stroke(_between(form, mark, numbers, sizes, np.concatenate(share, axis=1), aside), mark)], []
+
+
+def barrel(along: np.ndarray) -> np.ndarray:
+    """Part of each way n x d that a cylinder takes: it has one length along a motion, and its rod a little at least."""
+    length = np.linalg.norm(along, axis=1)
+    longest = float(np.max(length, where=np.isfinite(length), initial=0.0))
+    found: np.ndarray = np.minimum(BARREL * longest / np.where(length > 0, length, 1.0), MOST_BARREL)
+    return found
 
 
 def _between(
     form: forms.SpringForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes, share: np.ndarray, aside: np.ndarray
 ) -> np.ndarray:
-    """Points at shares of the way from a to b, and aside of it [symbol units]; to its side between short ends."""
+    """Points at shares of the way from a to b, and aside of it [symbol units]; to its side between short ends.
+
+    Args:
+        share: k, or n x k.
+    """
     a, b = numbers.spot(form.a, mark), numbers.spot(form.b, mark)
     along = b - a
     length = np.linalg.norm(along, axis=1, keepdims=True)
@@ -118,7 +134,7 @@ def _between(
         share = np.concatenate([[0.0, 0.04], 0.08 + 0.84 * share, [0.96, 1.0]])
         shifted = np.concatenate([[0.0, 0.0], shifted, [0.0, 0.0]])
         share[1], share[-2] = share[2], share[-3]
-    path: np.ndarray = a[:, None, :] + share[:, None] * along[:, None, :]
+    path: np.ndarray = a[:, None, :] + share[..., None] * along[:, None, :]
     return path + sizes.unit * shifted[:, None] * left[:, None, :]
 
 
@@ -192,14 +208,16 @@ def _arrow(form: forms.ArrowForm, mark: Mark, numbers: SceneNumbers, sizes: Pict
     return strokes, [Letter(form.text, free, mark.role, mark.of)] if form.text else []
 
 
-def _arrow_strokes(begin: np.ndarray, tip: np.ndarray, mark: Mark, sizes: PictureSizes) -> list[Stroke]:
-    """An arrow from one place to another, n x 2 each; gone where it has no length."""
+def _arrow_strokes(
+    begin: np.ndarray, tip: np.ndarray, mark: Mark, sizes: PictureSizes, part: float = 1.0
+) -> list[Stroke]:
+    """An arrow from one place to another, n x 2 each, its head so many units long; gone where it has no length."""
     along = tip - begin
     length = np.linalg.norm(along, axis=1, keepdims=True)
     hidden = np.where(length > 0.02 * sizes.unit, 0.0, np.nan)
     x = _unit(along)
     y = np.column_stack([-x[:, 1], x[:, 0]])
-    size = np.minimum(sizes.unit, 0.8 * length)[:, None, :]
+    size = np.minimum(part * sizes.unit, 0.8 * length)[:, None, :]
     head = tip[:, None, :] + size * (HEAD[:, :1] * x[:, None, :] + HEAD[:, 1:] * y[:, None, :])
     shaft = np.stack([begin, tip - 0.85 * size[:, 0] * x], axis=1)
     return [_stroke(shaft + hidden[:, None], mark), _stroke(head + hidden[:, None], mark, filled=True)]
@@ -234,7 +252,7 @@ def _load(form: forms.LoadForm, mark: Mark, numbers: SceneNumbers, sizes: Pictur
         tip = a + share * (b - a)
         tail = tip - size * (p + share * (q - p))
         tails.append(tail)
-        found += _arrow_strokes(tail, tip, mark, sizes)
+        found += _arrow_strokes(tail, tip, mark, sizes, SMALL)
     found.append(_stroke(np.stack(tails, axis=1), mark))
     letters = [Letter(form.text, np.mean(tails, axis=0), mark.role, mark.of)] if form.text else []
     return found, letters

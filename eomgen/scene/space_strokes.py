@@ -18,8 +18,10 @@ from eomgen.model import (
     RevolutionForm,
 )
 from eomgen.scene import forms
+from eomgen.scene.plane_strokes import barrel
 from eomgen.scene.scene import Mark, plain_number
 from eomgen.scene.strokes import (
+    ARROW,
     SYMBOL,
     DrawerTable,
     Drawing,
@@ -38,14 +40,17 @@ SEEN = 0.0012  # of the extent: chords need not be nearer to their arc
 STANDS_FOR = 2.0  # times that for an ellipsoid that only stands for masses
 FAR = 0.5  # part of what is upright along an axis: more, and the top of a picture is at that end of it
 BESIDE = 3  # units of a plane around what is drawn over it, and of the weight's arrow from its corner
+SMALLER = 0.6  # heads of a line load, of those of a force
 SMALL = 10  # pieces of a turn of a symbol no larger than its unit
 CUBE = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
 SIDES = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
 
 
-def space_drawing(numbers: SceneNumbers, *, dimensions: bool = False, symbol: float = SYMBOL) -> Drawing:
+def space_drawing(
+    numbers: SceneNumbers, *, dimensions: bool = False, symbol: float = SYMBOL, arrow: float = ARROW
+) -> Drawing:
     """The strokes of a scene in space."""
-    return drawn_with(TABLE, numbers, dimensions=dimensions, symbol=symbol)
+    return drawn_with(TABLE, numbers, dimensions=dimensions, symbol=symbol, arrow=arrow)
 
 
 def _faces(corners: np.ndarray, mark: Mark, role: str = "", *, solid: bool = False) -> Stroke:
@@ -199,6 +204,22 @@ def _damper(form: forms.DamperForm, mark: Mark, numbers: SceneNumbers, sizes: Pi
     return [Stroke(path, mark.role, mark.of) for path in (start, *paths)], []
 
 
+def _cylinder(form: forms.CylinderForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
+    """A closed cylinder of one length, and a rod that comes out of it."""
+    a, b = numbers.spot(form.a, mark), numbers.spot(form.b, mark)
+    n = _unit(b - a)
+    x, y = _crossing(n)
+    length = np.linalg.norm(b - a, axis=1)
+    end = barrel(b - a) * length
+    found = []
+    for radius, low, high in ((0.6, 0.0 * end, end), (0.25, end, length)):
+        r = np.tile(radius * sizes.unit * np.array([0.0, 1.0, 1.0, 0.0]), (numbers.size, 1))
+        own = _quads(_swept(r, np.column_stack([low, low, high, high]), SMALL))
+        turned = sum(own[..., k : k + 1] * e[:, None, None, :] for k, e in enumerate((x, y, n)))
+        found.append(_faces(a[:, None, None, :] + turned, mark, solid=True))
+    return found, []
+
+
 def _along(
     form: forms.SpringForm, mark: Mark, numbers: SceneNumbers, share: np.ndarray, across: np.ndarray
 ) -> np.ndarray:
@@ -285,13 +306,15 @@ def _arrow(form: forms.ArrowForm, mark: Mark, numbers: SceneNumbers, sizes: Pict
     return _arrow_strokes(begin, tip, mark, sizes), letters
 
 
-def _arrow_strokes(begin: np.ndarray, tip: np.ndarray, mark: Mark, sizes: PictureSizes) -> list[Stroke]:
-    """A shaft, and a cone at its end; gone where it has no length."""
+def _arrow_strokes(
+    begin: np.ndarray, tip: np.ndarray, mark: Mark, sizes: PictureSizes, part: float = 1.0
+) -> list[Stroke]:
+    """A shaft, and a cone at its end, so many units of the usual; gone where it has no length."""
     along = tip - begin
     length = np.linalg.norm(along, axis=1, keepdims=True)
     hidden = np.where(length > 0.02 * sizes.unit, 0.0, np.nan)
     n = _unit(along)
-    size = np.minimum(1.2 * sizes.unit, 0.8 * length)
+    size = np.minimum(1.2 * part * sizes.unit, 0.8 * length)
     first, second = _crossing(n)
     turn = np.linspace(0, math.tau, 9)
     rim = (tip - size * n)[:, None, :] + 0.33 * size[:, None] * (
@@ -313,15 +336,17 @@ def _couple(form: forms.CoupleForm, mark: Mark, numbers: SceneNumbers, sizes: Pi
 
 
 def _load(form: forms.LoadForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
-    """Arrows whose tips are on a line."""
+    """Arrows whose tips are on a line, their tails joined."""
     a, b = numbers.spot(form.a, mark), numbers.spot(form.b, mark)
     p, q = numbers.way(form.at_a, mark), numbers.way(form.at_b, mark)
     size = 0.07 * sizes.extent / (float(np.nanmax(np.linalg.norm(np.concatenate([p, q]), axis=1))) or 1.0)
-    found = []
+    found, tails = [], []
     for share in np.linspace(0, 1, 8):
         tip = a + share * (b - a)
-        found += _arrow_strokes(tip - size * (p + share * (q - p)), tip, mark, sizes)
-    return found, [Letter(form.text, 0.5 * (a + b), mark.role, mark.of)] if form.text else []
+        tails.append(tip - size * (p + share * (q - p)))
+        found += _arrow_strokes(tails[-1], tip, mark, sizes, SMALLER)
+    found.append(Stroke(np.stack(tails, axis=1), mark.role, mark.of))
+    return found, [Letter(form.text, np.mean(tails, axis=0), mark.role, mark.of)] if form.text else []
 
 
 def _label(form: forms.LabelForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
@@ -368,7 +393,7 @@ TABLE: DrawerTable = {
     forms.RodForm: _rod,
     forms.SpringForm: _spring,
     forms.DamperForm: _damper,
-    forms.CylinderForm: _damper,
+    forms.CylinderForm: _cylinder,
     forms.WheelForm: _wheel,
     forms.TrackForm: _track,
     forms.SymbolForm: _symbol,

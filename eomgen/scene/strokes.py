@@ -200,14 +200,19 @@ class Drawing:
 
 
 def drawn_with(
-    table: DrawerTable, numbers: SceneNumbers, *, dimensions: bool = False, symbol: float = SYMBOL
+    table: DrawerTable,
+    numbers: SceneNumbers,
+    *,
+    dimensions: bool = False,
+    symbol: float = SYMBOL,
+    arrow: float = ARROW,
 ) -> Drawing:
     """The marks of a scene as strokes and letters.
 
     Args:
         table: the function that draws each form, in the plane or in space.
         dimensions: dimension lines and angles are drawn.
-        symbol: size of symbols, of the extent.
+        symbol: size of symbols, of the extent; arrow: of the longest arrow.
     """
     marks = numbers.scene.marks
     flat = PictureSizes(0.0, np.zeros(numbers.dimension), np.ones(numbers.dimension))
@@ -219,7 +224,7 @@ def drawn_with(
         for stroke in table[type(m.form)](m.form, m, numbers, flat)[0]
     ]
     low, high, extent = _box(numbers, [stroke for strokes in solid for stroke in strokes], guides)
-    sizes = PictureSizes(symbol * extent, low, high, _scales(numbers, extent), dimensions, _up(numbers), extent)
+    sizes = PictureSizes(symbol * extent, low, high, _scales(numbers, arrow * extent), dimensions, _up(numbers), extent)
     strokes: list[Stroke] = []
     letters: list[Letter] = []
     for mark in marks:
@@ -299,8 +304,8 @@ def corners_of(clouds: Iterable[np.ndarray], d: int) -> tuple[np.ndarray, np.nda
     return np.min(lows, axis=0), np.max(highs, axis=0)
 
 
-def _scales(numbers: SceneNumbers, extent: float) -> dict[tuple[str, str], float]:
-    """Scales of arrows: the longest of a role and unit, but for a fiftieth of all instants, has the length ARROW.
+def _scales(numbers: SceneNumbers, longest: float) -> dict[tuple[str, str], float]:
+    """Scales of arrows: the longest of a role and unit, but for a fiftieth of all instants, has a given length [m].
 
     What is applied and what joints do have one scale.
     """
@@ -314,5 +319,5 @@ def _scales(numbers: SceneNumbers, extent: float) -> dict[tuple[str, str], float
         known = np.concatenate([size for one in alike for size in sizes.get(one, [])])
         known = known[np.isfinite(known)]
         largest = float(np.quantile(known, QUANTILE)) if len(known) else 0.0
-        found[key] = ARROW * extent / largest if largest > 0 else 0.0
+        found[key] = longest / largest if largest > 0 else 0.0
     return found

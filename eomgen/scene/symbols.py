@@ -85,6 +85,7 @@ PLANE: dict[str, SymbolParts] = {
     "wall": hatched(0, 1.4),
     "turned": (("drive", _bow(1.7)), ("drive", _head(1.7, math.radians(150)))),
     "shifted": (("drive", _line((-1.6, 1.5), (1.0, 1.5))), ("drive", _polygon((1.9, 1.5), (0.8, 1.85), (0.8, 1.15)))),
+    "rotor": (("body", _circle(0, 0, 2.6)), ("body", _line((0.42, 0), (2.6, 0)))),
     "blade": (("joint", _polygon((-1.6, 0), (-1, 0.3), (1, 0.3), (1.6, 0), (1, -0.3), (-1, -0.3))),),
 }
 

@@ -23,8 +23,9 @@ from eomgen.mechanics.free_bodies import Axes, Effect, Structure, numeral
 from eomgen.mechanics.kinematics import BodyLink, SystemScene
 from eomgen.mechanics.statics import StaticReaction, WorkEquation
 from eomgen.model import UniformField
+from eomgen.scene.arrows import center_marks
 from eomgen.scene.bodies import parameters_as_drawn
-from eomgen.scene.forms import ArrowForm, CoupleForm, LabelForm, PointForm, SymbolForm
+from eomgen.scene.forms import ArrowForm, CoupleForm, SymbolForm
 from eomgen.scene.making import scene_of_system
 from eomgen.scene.plane_strokes import plane_drawing
 from eomgen.scene.scene import Mark, Scene
@@ -174,8 +175,7 @@ class VirtualDisplacement:
                 continue
             spot = np.array(self._numbers(place[:2]))
             if np.all(spot > low - reach) and np.all(spot < high + reach):
-                yield Mark(PointForm(place), 0, "center", "")
-                yield Mark(LabelForm(numeral(number), place), 0, "center", "")
+                yield from center_marks([(numeral(number), place)])
 
     def _numbers(self, scalars: Sequence[Scalar]) -> list[float]:
         """Scalars where the structure stands."""

@@ -43,6 +43,18 @@ from eomgen.mechanics.statics.influence import InfluenceSpan as InfluenceSpan
 # The axis of a body
 from eomgen.mechanics.statics.member_axis import MemberAxis as MemberAxis
 
+# What a beam in space has: N, V_y, V_z, T, M_y, M_z
+from eomgen.mechanics.statics.sections_in_space import SPACE_KINDS as SPACE_KINDS
+
+# The section forces of a beam in space between two stations
+from eomgen.mechanics.statics.sections_in_space import PieceInSpace as PieceInSpace
+
+# N, V, T and M along one body in space
+from eomgen.mechanics.statics.sections_in_space import SectionsInSpace as SectionsInSpace
+
+# t, e_y, e_z of a leg, body axes
+from eomgen.mechanics.statics.sections_in_space import triad as triad
+
 # One load of the structure
 from eomgen.mechanics.statics.virtual_work import Acting as Acting
 

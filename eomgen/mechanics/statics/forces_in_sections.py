@@ -36,7 +36,7 @@ class Action:
 
     x: Scalar
     force: Vector
-    couple: Scalar
+    couple: Vector
 
 
 @dataclass(frozen=True)
@@ -171,15 +171,15 @@ class SectionForces:
         loads = MemberLoads(reactions, body, sizes)
         actions, spreads = loads.actions, loads.spreads
         axis = axis_of(motion, body, [place for place, _, _ in actions] + [p for s in spreads for p in s[:2]], sizes)
-        placed = [Action(_on_axis(axis, place), force, couple) for place, force, couple in actions]
-        spread = [part for line in spreads for part in _spread(axis, line)]
+        placed = [Action(on_axis(axis, place), force, couple) for place, force, couple in actions]
+        spread = [part for line in spreads for part in spread_along(axis, line)]
         return SectionForces(axis, tuple(_pieces(axis, placed, spread)))
 
 
 # -- along the axis ----------------------------------------------------------------------------------
 
 
-def _on_axis(axis: MemberAxis, place: Vector) -> Scalar:
+def on_axis(axis: MemberAxis, place: Vector) -> Scalar:
     x = axis.distance(place)
     if x is None:
         where = ", ".join(to_text(component) for component in place[:2])
@@ -191,9 +191,9 @@ def _on_axis(axis: MemberAxis, place: Vector) -> Scalar:
     return x
 
 
-def _spread(axis: MemberAxis, line: MemberLoad) -> Iterable[Spread]:
+def spread_along(axis: MemberAxis, line: MemberLoad) -> Iterable[Spread]:
     """A line load as a function of x, from its first place to its last along the axis."""
-    a, b = _on_axis(axis, line[0]), _on_axis(axis, line[1])
+    a, b = on_axis(axis, line[0]), on_axis(axis, line[1])
     length = axis.sizes.simple(b - a)
     if axis.sizes.sign(length) < 0:
         a, b, length, line = b, a, -length, (line[1], line[0], line[3], line[2])
@@ -211,14 +211,14 @@ def _spread(axis: MemberAxis, line: MemberLoad) -> Iterable[Spread]:
 def _pieces(axis: MemberAxis, actions: Sequence[Action], spreads: Sequence[Spread]) -> Iterable[SectionPiece]:
     """Pieces from station to station; all forces before a piece are summed to one force and one moment."""
     sizes = axis.sizes
-    stations = _stations(axis, actions, spreads)
+    stations = stations_of(axis, actions, spreads)
     R: Vector = Vector.ZERO
     T: Scalar = 0
     for start, end in pairwise(stations):
-        leg = _leg(axis, start, end)
+        leg = leg_at(axis, start, end)
         for action in actions:
             if sizes.sign(action.x - start) == 0:
-                R, T = R + action.force, T + action.couple
+                R, T = R + action.force, T + action.couple[2]
         over_it = [s for s in spreads if sizes.sign(start - s.start) >= 0 and sizes.sign(s.end - end) >= 0]
         q, slope = Vector.ZERO, Vector.ZERO
         for s in over_it:
@@ -244,7 +244,7 @@ def _piece(
     return SectionPiece(*ends, leg, *(tuple(sizes.simple(c) for c in series) for series in (N, V, M)))
 
 
-def _stations(axis: MemberAxis, actions: Sequence[Action], spreads: Sequence[Spread]) -> list[Scalar]:
+def stations_of(axis: MemberAxis, actions: Sequence[Action], spreads: Sequence[Spread]) -> list[Scalar]:
     """Distances at which a force, a load or a leg begins or ends, in order."""
     sizes = axis.sizes
     places = [*axis.ends, *(leg.x for leg in axis.legs), *(a.x for a in actions)]
@@ -259,7 +259,7 @@ def _stations(axis: MemberAxis, actions: Sequence[Action], spreads: Sequence[Spr
     return found
 
 
-def _leg(axis: MemberAxis, start: Scalar, end: Scalar) -> Leg:
+def leg_at(axis: MemberAxis, start: Scalar, end: Scalar) -> Leg:
     """The leg on which a piece lies."""
     before = [leg for leg in axis.legs if axis.sizes.sign(start - leg.x) >= 0]
     return before[-1] if before else axis.legs[0]
@@ -302,7 +302,7 @@ def place_of(components: Sequence[Component], effect: Effect, owner: str) -> Vec
     return next((e.place for e in mine if e.place is not None), None)
 
 
-_At = tuple[Vector, Vector, Scalar]
+_At = tuple[Vector, Vector, Vector]
 """(place, force, couple), body axes."""
 MemberLoad = tuple[Vector, Vector, Vector, Vector]
 """(start, end, load per length at the start, at the end), body axes."""
@@ -327,7 +327,7 @@ class MemberLoads:
             else:
                 _, f, c = found[same]
                 found[same] = (place, f + force, c + couple)
-        return [(place, self._simple(f), self.sizes.simple(c)) for place, f, c in found]
+        return [(place, self._simple(f), self._simple(c)) for place, f, c in found]
 
     @cached_property
     def spreads(self) -> list[MemberLoad]:
@@ -374,7 +374,9 @@ class MemberLoads:
 
     def _at(self, effect: Effect) -> _At:
         assert effect.place is not None, "placed before"
-        return effect.place, self._turned(effect.force), effect.couple[2]
+        if Axes(self._system.motion).plane:
+            return effect.place, self._turned(effect.force), effect.couple
+        return effect.place, effect.force, effect.couple
 
     # -- mass --------------------------------------------------------------------------------------
 
@@ -388,7 +390,7 @@ class MemberLoads:
         field, motion = system.motion.field(self.body), system.motion
         if ends is None:
             inertia = field.acceleration(motion.position((self.body, mass.com)))
-            if self._is_zero((*(self._weight() - inertia), field.e[2])):
+            if self._is_zero((*(self._weight() - inertia), *field.e)):
                 return []
             what = f"how the mass of '{self.body}' is spread along it is not known"
             raise DerivationError(

@@ -121,7 +121,7 @@ class MemberAxis:
         """x of a place, None where it is not on the axis."""
         for k, leg in enumerate(self.legs):
             r = place - leg.start
-            if not vanishes(self.sizes.simple(leg.along.cross(r)[2])):
+            if not _is_along(leg.along, r, self.sizes):
                 continue
             s = self.sizes.simple(leg.along @ r)
             before = self.sizes.sign(s) >= 0 or (k == 0 and self.is_straight)
@@ -174,16 +174,21 @@ def _distinct(places: Sequence[Vector], sizes: Sizes) -> list[Vector]:
     return found
 
 
+def _is_along(along: Vector, r: Vector, sizes: Sizes) -> bool:
+    """True if a vector is parallel to a direction."""
+    return all(vanishes(sizes.simple(x)) for x in along.cross(r))
+
+
 def _on_one_line(places: Sequence[Vector], sizes: Sizes) -> bool:
     along = places[1] - places[0]
-    return all(vanishes(sizes.simple(along.cross(p - places[0])[2])) for p in places[2:])
+    return all(_is_along(along, p - places[0], sizes) for p in places[2:])
 
 
 def _extremes(places: Sequence[Vector], named: Sequence[Vector], sizes: Sizes) -> list[Vector]:
     """The first and the last place along the line, from left to right in the body's axes, else upwards."""
     first, last = (named[0], named[-1]) if len(named) > 1 else (places[0], places[1])
     along = last - first
-    if (sizes.sign(along[0]) or sizes.sign(along[1])) < 0:
+    if (sizes.sign(along[0]) or sizes.sign(along[1]) or sizes.sign(along[2])) < 0:
         along = -along
     lowest = highest = first
     for place in places:
@@ -209,7 +214,7 @@ def _corners(places: Sequence[Vector], sizes: Sizes) -> list[Vector]:
 
 def _lies_between(place: Vector, a: Vector, b: Vector, sizes: Sizes) -> bool:
     along, r = b - a, place - a
-    if not vanishes(sizes.simple(along.cross(r)[2])):
+    if not _is_along(along, r, sizes):
         return False
     s = along @ r
     return sizes.sign(s) >= 0 and sizes.sign(along @ along - s) >= 0

@@ -145,6 +145,10 @@ class Constraint(Part, ABC):
         """True if this version derives the constraint in this space."""
         return space in cls.spaces
 
+    def wheels(self) -> tuple[str, str, Any] | None:
+        """(first, second, ratio) of two bodies that turn at a ratio, omega_1 = ratio * omega_2; None of all others."""
+        return None
+
     def strand_rows(self) -> tuple[int, ...]:
         """Row, from 1, with the tension of each strand of a string; () where it is no string."""
         return ()

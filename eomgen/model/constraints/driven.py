@@ -1,6 +1,6 @@
 """Gears, and coordinates that are driven through a constraint."""
 
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from eomgen.frozen import dataclass
 from eomgen.model.constraints.base import Constraint
@@ -33,6 +33,9 @@ class Gear(Constraint):
     kind: ClassVar[str] = "gear"
     bodies: TwoBodies
     ratio: Pure
+
+    def wheels(self) -> tuple[str, str, Any]:
+        return (*self.bodies, self.ratio)
 
     def stays(self, component: str) -> bool:
         return True

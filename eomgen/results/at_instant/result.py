@@ -12,8 +12,6 @@ import numpy as np
 
 from eomgen.codegen import compiled, program_of
 from eomgen.documents import (
-    ARROW,
-    REACTION,
     Cell,
     Document,
     Law,
@@ -25,11 +23,9 @@ from eomgen.documents import (
     Result,
     Sketch,
     Step,
-    arrow,
     data_step,
     document_of,
     draw_model,
-    name_beside,
 )
 from eomgen.errors import MissingValues, RunFailed
 from eomgen.frozen import dataclass
@@ -50,6 +46,7 @@ from eomgen.results.at_instant.steps import (
     relative_payload,
     relative_steps,
 )
+from eomgen.scene import DrawnArrow, arrow_marks, center_marks, exact_vector
 from eomgen.study import kinematic_state
 from eomgen.symbolic.expression import Node, Scalar, State, Vector, depends_on, order, substituted, symbols_of
 from eomgen.symbolic.numeric import FLOAT, evaluate, tolerances
@@ -364,7 +361,6 @@ def _followed(system: System, slope: PlaneSlope, values: State, step: float) -> 
 SIZE, BELOW = (11.0, 8.0), 4.5  # of the mechanism, and the height of a row of centrodes below it [inches]
 MOST_CENTRODES = 6
 COLORS = ("#2f5d8a", "#b03a2e", "#2e7d4f", "#8e5ea2", "#c77c11", "#3b8ea5", "#7a5c3e", "#5a5a5a")
-CENTER = "#8e44ad"
 FAR_OUT = 1.6  # how far outside the mechanism a centre is still drawn, of its extent
 
 
@@ -393,8 +389,13 @@ class _Panels:
         symbols = state.system.symbols
         places = {node: self.number(state.moving.get(node, 0)) for node in (*symbols.q, symbols.t)}
         known = {node: self.number(node) for node in symbols.parameters.values()}
-        self.sketch = Sketch(state.system, {**places, **known})
         self.points = [(names, self.numbers(r), self.numbers(v)) for names, r, v, _ in state.points]
+        colors = {body: color for color, _, bodies in self._blocks() for body in bodies}
+        bare = Sketch(state.system, {**places, **known}, colors=colors)
+        near, self.far = self._centers(bare.extent)
+        velocities = (DrawnArrow(names, at, v, "velocity", outward=True, unit="m/s") for names, at, v in self.points)
+        centers = ((name, exact_vector(at)) for name, at in near.items())
+        self.sketch = replace(bare, more=(*arrow_marks(velocities), *center_marks(centers)))
 
     def number(self, x: Scalar) -> float:
         """A scalar as a number, the rate that was left open being 1."""
@@ -417,14 +418,12 @@ class _Panels:
             self._centrodes(below)
         panels = figure.subplot_mosaic(rooms, width_ratios=ratios, height_ratios=ratios)
         main = panels["mechanism"]
-        draw_model(main, self.sketch, colors={body: color for color, _, bodies in self._blocks() for body in bodies})
+        draw_model(main, self.sketch)
         main.set_adjustable("datalim")  # the projections stand exactly below it and to its side
-        self._velocities(main)
-        far = self._centers(main)
         figure.canvas.draw()
         self._along_x(panels["y"], main.get_xlim())
         self._along_y(panels["x"], main.get_ylim())
-        self._words(panels["words"], far)
+        self._words(panels["words"])
 
     def _centrodes(self, figure: Any) -> None:
         """The curves of the centres of rotation, two in a row."""
@@ -436,34 +435,25 @@ class _Panels:
         for panel in panels[len(self.centrodes) :]:
             panel.axis("off")
 
-    def _velocities(self, panel: Any) -> None:
-        fastest = max((float(np.hypot(*v)) for _, _, v in self.points), default=0.0)
-        scale = ARROW * self.sketch.extent / fastest if fastest else 0.0
-        for _, at, (x, y) in self.points:
-            arrow(panel, at, (scale * x, scale * y), color=REACTION, outward=True)
-
-    def _centers(self, panel: Any) -> list[str]:
-        """Centres in sight as crosses; words on the others."""
-        places: dict[tuple[float, float], list[str]] = {}
+    def _centers(self, extent: float) -> tuple[dict[str, PagePoint], list[str]]:
+        """(the places of centres in sight by their names together, words on the others)"""
+        places: dict[PagePoint, list[str]] = {}
         far = []
         for center in self.mechanism.centers.values():
             x, y = self.numbers(center.point)
             if center.at_infinity:
                 far.append(f"{center.name}: at infinity along ({x:.4g}, {y:.4g})")
-            elif self._is_far((x, y)):
+            elif self._is_far((x, y), extent):
                 far.append(f"{center.name}: ({x:.4g}, {y:.4g})")
             else:
                 places.setdefault((round(x, 9), round(y, 9)), []).append(center.name)
-        for place, names in places.items():
-            panel.plot(*place, marker="x", markersize=8, color=CENTER, zorder=8)
-            name_beside(panel, " ".join(names).replace("$", r"\$"), place, CENTER)
-        return far
+        return {" ".join(names): place for place, names in places.items()}, far
 
-    def _is_far(self, place: PagePoint) -> bool:
+    def _is_far(self, place: PagePoint, extent: float) -> bool:
         """True if a place is well outside the mechanism."""
         corners = np.array([at for _, at, _ in self.points])
         low, high = corners.min(axis=0), corners.max(axis=0)
-        reach = FAR_OUT * self.sketch.extent
+        reach = FAR_OUT * extent
         return bool(np.any(np.array(place) < low - reach) or np.any(np.array(place) > high + reach))
 
     def _along_x(self, panel: Any, limits: tuple[float, float]) -> None:
@@ -502,7 +492,7 @@ class _Panels:
         moved = [(name, bodies) for name, bodies in self.mechanism.blocks.items() if name != FIXED]
         return [(COLORS[k % len(COLORS)], name, bodies) for k, (name, bodies) in enumerate(moved)]
 
-    def _words(self, panel: Any, far: list[str]) -> None:
+    def _words(self, panel: Any) -> None:
         """The legend, centres out of sight, the unit rate."""
         panel.axis("off")
         for color, name, _ in self._blocks():
@@ -510,7 +500,7 @@ class _Panels:
         if self.mechanism.moved:
             panel.legend(loc="upper left", ncols=2, fontsize=9)
         rate = [] if self.state.symbol is None else [f"for {self.state.rate} = 1"]
-        lines = [*rate, *(["centres out of sight:", *far] if far else [])]
+        lines = [*rate, *(["centres out of sight:", *self.far] if self.far else [])]
         panel.text(0.02, 0.05, "\n".join(lines).replace("$", r"\$"), fontsize=8, va="bottom", transform=panel.transAxes)
 
 

@@ -2,247 +2,41 @@
 
 from __future__ import annotations
 
-import math
-import re
 from collections.abc import Iterable, Mapping, Sequence
-from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from eomgen.documents import (
-    ARROW,
-    INK,
-    LOAD,
-    REACTION,
-    PagePoint,
-    Picture,
-    PlacedName,
-    Scale,
-    Sketch,
-    arrow,
-    distributed,
-    draw_model,
-    four_figures,
-    is_freer_outward,
-    moment_arc,
-    name_along,
-    name_beside,
-    notation_of,
-    own_symbol,
-    scale_of,
-)
-from eomgen.errors import RunFailed
-from eomgen.frozen import dataclass
-from eomgen.mechanics.free_bodies import Axes, Component, Effect
+from eomgen.documents import INK, Picture, PlacedName, Scale, four_figures
 from eomgen.mechanics.statics import (
     KINDS,
     Extreme,
     InfluenceLine,
+    PieceInSpace,
     SectionForces,
     SectionPiece,
+    SectionsInSpace,
     StaticReactions,
 )
-from eomgen.model import Couple, Model, PointForce, SpreadLoad
-from eomgen.results.at_rest.section_steps import Sections
-from eomgen.results.at_rest.steps import letter_of_reaction
-from eomgen.symbolic.expression import Node, Scalar, Vector
+from eomgen.model import Model
+from eomgen.proof import ReportedPush
+from eomgen.results.at_rest.section_steps import Sections, sections_in_space
+from eomgen.results.at_rest.structure import StaticScene, draw_structure, label_of
+from eomgen.scene import pushes_reported
+from eomgen.symbolic.expression import Node, Scalar
 from eomgen.symbolic.numeric import FLOAT, evaluate, tolerances
-from eomgen.symbolic.print import Setter, text_size, to_text
+from eomgen.symbolic.print import Setter
 
 # -------- picture ---------------------------------------------------------------------------------------------
-# StaticReactions -> a picture: the structure with its loads and its reactions; forces of truss members next to them.
+# StaticReactions -> a picture: the structure with its loads and its reactions, the diagrams of its beams below it.
 
 
-TENSION, COMPRESSION = "#2457a6", "#b03a2e"
-SHORTEST = 0.45  # of the longest arrow
 WIDTH = 9.0  # of the picture [inches]
 COLUMN, DIAGRAM = 3.4, 1.5  # width and height of a diagram [inches]
 MOST_COLUMNS = 8  # bodies with diagrams
-LOWEST = 2.4  # height of the structure [inches]
+LOWEST, HIGHEST = 2.4, 8.0  # height of the structure [inches]
 TITLE_ROOM = 0.4  # above the structure [inches]
-LONGEST_LABEL = 24  # characters of a formula next to an arrow
-
-
-@dataclass(frozen=True)
-class StaticScene:
-    """Content of a picture of a structure.
-
-    Args:
-        statics: the structure with its reactions.
-        known: all parameters have values; else those without are drawn as 1, and formulas stand for numbers.
-    """
-
-    statics: StaticReactions
-    known: bool
-
-    @cached_property
-    def sketch(self) -> Sketch:
-        system, at = self.statics.system, self.statics.structure.at
-        values = system.scope.model.exact_parameters()
-        numbers = {node: float(values.get(name, 1)) for name, node in system.symbols.parameters.items()}
-        numbers |= {p: 1.0 for p in system.symbols.unknowns.values()}
-        plain = Sketch(system, numbers)
-        found = dict(zip(at, plain.numbers(at.values()), strict=True))
-        unknowns = self.statics.balance.unknowns
-        found |= dict(zip(unknowns, plain.numbers(unknowns.values()), strict=True))
-        return Sketch(system, {**numbers, **found}, dimensions=True)
-
-    @property
-    def written(self) -> Setter | None:
-        """Typesetting of formulas that stand for numbers; None where numbers are known."""
-        return None if self.known else Setter(notation_of(self.statics.system.scope.model))
-
-    @cached_property
-    def forces(self) -> list[tuple[PagePoint, PagePoint, str, str]]:
-        """(tip, force, colour, label) of every single force, loads first."""
-        return [*self._loads(), *self._reactions()]
-
-    @cached_property
-    def scale(self) -> Scale:
-        """Scale of all forces and couples, of the loads and the reactions."""
-        loads = [acting.load for acting in self.statics.loads]
-        sizes = [math.hypot(*self._vector(load.force, load.axes)) for load in loads if isinstance(load, PointForce)]
-        values = self.sketch.numbers(each.value for each in self.statics.reactions if each.value is not None)
-        return scale_of([*sizes, *values])
-
-    @cached_property
-    def lines(self) -> list[np.ndarray]:
-        """Lines of bodies and of members of trusses."""
-        system = self.statics.system
-        bodies = [line for link in system.motion.links for line in self.sketch.lines(link)]
-        ends = [pair for _, _, pair in system.scope.model.truss_members]
-        return [*bodies, *(np.array([self.sketch.position((node, Vector.ZERO)) for node in pair]) for pair in ends)]
-
-    def length(self, force: PagePoint) -> PagePoint:
-        """An arrow for a force: longer for a larger one, never very short."""
-        size = math.hypot(*force)
-        share = SHORTEST + (1 - SHORTEST) * size / self.largest
-        scale = ARROW * self.sketch.extent * share / size
-        return force[0] * scale, force[1] * scale
-
-    @cached_property
-    def largest(self) -> float:
-        return max((math.hypot(*force) for _, force, _, _ in self.forces), default=0.0) or 1.0
-
-    def _loads(self) -> Iterable[tuple[PagePoint, PagePoint, str, str]]:
-        for acting in self.statics.loads:
-            load = acting.load
-            if isinstance(load, PointForce) and load.place[0] is not None:
-                x, y = self._vector(load.force, load.axes)
-                yield self.sketch.position(load.place), (x, y), LOAD, self._named(acting.name, math.hypot(x, y), "N")
-
-    def _named(self, load: str, size: float, unit: str) -> str:
-        """A load by its name, with its size."""
-        return f"{load} = {self.scale.text(size, unit)}" if self.known else load
-
-    def _vector(self, vector: Any, axes: str | None) -> PagePoint:
-        numbers = np.array(self.sketch.numbers(vector[:2]))
-        if axes is not None:
-            R = self.statics.system.motion.link(axes).pose.R
-            numbers = np.array([self.sketch.numbers(row[:2]) for row in R[:2]]) @ numbers
-        return float(numbers[0]), float(numbers[1])
-
-    def _reactions(self) -> Iterable[tuple[PagePoint, PagePoint, str, str]]:
-        for component, value, label in self._outer():
-            (effect,) = component.effects
-            x, y = self.sketch.numbers(effect.force[:2])
-            if math.hypot(x, y):
-                yield self.place(effect), (x * value, y * value), REACTION, label
-
-    def couples(self) -> Iterable[tuple[PagePoint, float, str, str]]:
-        """(place, sense, colour, label) of every couple."""
-        for acting in self.statics.loads:
-            load = acting.load
-            if isinstance(load, Couple):
-                (size,) = self.sketch.numbers(load.couple[2:])
-                at = self._middle(load.body) if load.place is None else self.sketch.position(load.place)
-                yield at, size, LOAD, self._named(acting.name, abs(size), "N m")
-        for component, value, label in self._outer():
-            (effect,) = component.effects
-            (couple,) = self.sketch.numbers(effect.couple[2:])
-            if couple:
-                yield self._seat(component), couple * value, REACTION, label
-
-    def spreads(self) -> Iterable[tuple[SpreadLoad, str]]:
-        """Line loads with their names and sizes."""
-        for acting in self.statics.loads:
-            if isinstance(acting.load, SpreadLoad):
-                yield acting.load, self._spread_label(acting.load, acting.name)
-
-    def _spread_label(self, load: SpreadLoad, name: str) -> str:
-        """Its name, with its size: at both ends where it changes."""
-        sizes = [math.hypot(*self.sketch.numbers(q[:2])) for q in (load.at_start, load.at_end)]
-        texts = list(dict.fromkeys(self.scale.number(size) for size in sizes))
-        return f"{name} = {' to '.join(texts)} {self.scale.unit('N/m')}" if self.known else name
-
-    def _outer(self) -> Iterable[tuple[Component, float, str]]:
-        """(component, value, label) of the determinate reactions of the ground."""
-        for j, component in enumerate(self.statics.structure.components):
-            if len(component.effects) != 1 or not self.statics.balance.solution.determined(j):
-                continue
-            reaction = self.statics.by_name.get(component.name)
-            value = None if reaction is None else reaction.value
-            unit = "N m" if component.label.startswith("couple") else "N"
-            number, text = self._shown(self.statics.balance.value(j) if value is None else value, unit)
-            zero = abs(number) <= tolerances.COMPUTED * self.largest_value
-            yield component, number, f"{self._letter(component)} = {'0' if zero else text}" if text else ""
-
-    @cached_property
-    def largest_value(self) -> float:
-        """Size of the largest load and reaction."""
-        loads = [acting.load for acting in self.statics.loads]
-        sizes = [math.hypot(*self._vector(load.force, load.axes)) for load in loads if isinstance(load, PointForce)]
-        values = self.sketch.numbers(each.value for each in self.statics.reactions if each.value is not None)
-        return max(map(abs, [*sizes, *values]), default=0.0)
-
-    def _letter(self, component: Component) -> str:
-        """The letter of a reaction, typeset."""
-        named = next((r.named for r in self.statics.reactions if r.name == component.name), None)
-        own = None if named is None else own_symbol(self.statics.balance.balance, named)
-        notation = notation_of(self.statics.system.scope.model)
-        return f"${notation.latex(letter_of_reaction(component.name)) if own is None else own.tex}$"
-
-    def _shown(self, value: Scalar, unit: str) -> tuple[float, str]:
-        """(a value in the sense in which its label is positive, the label): a number, or a short formula."""
-        (number,) = self.sketch.numbers((value,))
-        if self.known:
-            return number, self.scale.text(abs(number), unit)
-        text, written = to_text(value), self.written
-        turned = text.startswith("-") and not any(sign in text[1:] for sign in (" + ", " - "))
-        shown = -value if turned else value
-        words = "" if written is None or len(text) > LONGEST_LABEL else f"${plain_tex(written, shown)}$"
-        return math.copysign(number, -1 if turned else 1), words
-
-    def label(self, value: Scalar) -> str:
-        """A value: a number without its unit, or a short formula where parameters have no values."""
-        text = self.scale.number(self.sketch.numbers((value,))[0]) if self.known else to_text(value)
-        return text if len(text) <= LONGEST_LABEL else ""
-
-    def place(self, effect: Effect) -> PagePoint:
-        """Place on the page where a reaction acts."""
-        axes = Axes(self.statics.system.motion)
-        link = axes.motion.links[effect.link]
-        x, y = self.sketch.place(link.pose.point(axes.masses[effect.link].com))
-        dx, dy = self.sketch.numbers(effect.arm[:2])
-        return x + dx, y + dy
-
-    def _seat(self, couple: Component) -> PagePoint:
-        """Place of a drawn couple: at the forces of its constraint or joint, else in the middle of the body."""
-        for other in self.statics.structure.components:
-            if other.owner == couple.owner and other.label != couple.label and len(other.effects) == 1:
-                return self.place(other.effects[0])
-        return self._middle(self.statics.system.motion.links[couple.effects[0].link].name)
-
-    def _middle(self, body: str) -> PagePoint:
-        places = [
-            self.sketch.position((body, r))
-            for name, r in self.statics.system.motion.points[body].items()
-            if name not in ("origin", "center")
-        ]
-        found = np.mean(places or [self.sketch.position((body, Vector.ZERO))], axis=0)
-        return float(found[0]), float(found[1])
 
 
 def statics_picture(found: StaticReactions, sections: Sections, influence: InfluenceLine | None) -> Picture:
@@ -250,25 +44,25 @@ def statics_picture(found: StaticReactions, sections: Sections, influence: Influ
 
     Beams that lie in a row have their diagrams exactly below them. Without values all is drawn for a stated ratio, and
     formulas stand for numbers.
-
-    Raises:
-        RunFailed: it is in space.
     """
     model = found.system.scope.model
-    if model.space != "plane":
-        raise RunFailed("structures in space are not drawn", fix="leave out --plot")
     missing = missing_values(model)
     scene = StaticScene(found, not missing)
-    bodies = list(sections.found.values())[:MOST_COLUMNS]
+    beams = list(sections.found.values())[:MOST_COLUMNS]
+    bodies = beams or list(sections_in_space(found.balance).values())[:MOST_COLUMNS]
     line = influence if not missing else None
-    heights = [height_of(scene), *([DIAGRAM] * (3 if bodies else 0)), *([1.5 * DIAGRAM] if line else [])]
+    heights = [
+        float(np.clip(WIDTH * scene.proportion, LOWEST, HIGHEST)),
+        *([DIAGRAM] * (len(KINDS) if beams else len(IN_SPACE) if bodies else 0)),
+        *([1.5 * DIAGRAM] if line else []),
+    ]
     words = f"drawn with {', '.join(missing)} = 1" if missing else ""
-    spans = spans_in_a_row(scene, bodies) if line is None else []
+    spans = spans_in_a_row(scene, beams) if line is None else []
     width = max(WIDTH, COLUMN * len(bodies)) if not spans else WIDTH
 
     def fill(figure: Any) -> None:
         if spans:
-            _in_one_column(figure, scene, list(zip(bodies, spans, strict=True)), heights)
+            _in_one_column(figure, scene, list(zip(beams, spans, strict=True)), heights)
         else:
             _in_a_grid(figure, scene, bodies, line, heights)
         if words:
@@ -277,17 +71,28 @@ def statics_picture(found: StaticReactions, sections: Sections, influence: Influ
     return Picture((width, sum(heights) + (ROOM if spans else 0.0)), fill, model.name)
 
 
+def pushes_on(found: StaticReactions) -> Iterable[ReportedPush]:
+    """All that the picture shows to act on the structure; () where its sizes are not all known."""
+    scene = StaticScene(found, not missing_values(found.system.scope.model))
+    return pushes_reported(scene.sketch.drawing, scene.sketch.frame) if scene.balanced else ()
+
+
 def _in_a_grid(
-    figure: Any, scene: StaticScene, bodies: Sequence[SectionForces], line: InfluenceLine | None, heights: list[float]
+    figure: Any,
+    scene: StaticScene,
+    bodies: Sequence[SectionForces | SectionsInSpace],
+    line: InfluenceLine | None,
+    heights: list[float],
 ) -> None:
     """The structure above, a column of diagrams for each body, the influence line below."""
     grid = figure.add_gridspec(len(heights), max(1, len(bodies)), height_ratios=heights)
     draw_structure(figure.add_subplot(grid[0, :]), scene)
     for column, forces in enumerate(bodies):
-        panels = [figure.add_subplot(grid[1 + k, column]) for k in range(3)]
-        diagram_panels(panels, forces, scene.sketch.values, scene.scale, scene.written)
+        count, drawn = (len(KINDS), diagram_panels) if isinstance(forces, SectionForces) else (len(IN_SPACE), in_space)
+        panels = [figure.add_subplot(grid[1 + k, column]) for k in range(count)]
+        drawn(panels, forces, scene.bare.values, scene.scale, scene.written)
     if line is not None:
-        influence_panel(figure.add_subplot(grid[-1, :]), line, scene.sketch.values)
+        influence_panel(figure.add_subplot(grid[-1, :]), line, scene.bare.values)
 
 
 def _filling(panel: Any, shape: float) -> tuple[float, float]:
@@ -320,11 +125,11 @@ def spans_in_a_row(scene: StaticScene, bodies: Sequence[SectionForces]) -> list[
     for forces in bodies:
         (leg, *more) = forces.axis.legs
         ends = (leg.start, leg.start + leg.length * leg.along)
-        (x, y), (u, v) = (scene.sketch.position((forces.axis.body, end)) for end in ends)
+        (x, y), (u, v) = (scene.bare.position((forces.axis.body, end)) for end in ends)
         if more or u <= x or abs(v - y) > tolerances.SAME_PLACE * (u - x):
             return []
         found.append((x, u))
-    near = tolerances.SAME_PLACE * scene.sketch.extent
+    near = tolerances.SAME_PLACE * scene.bare.extent
     apart = all(a[1] <= b[0] + near for a, b in pairwise(sorted(found)))
     return found if apart else []
 
@@ -350,8 +155,8 @@ def _in_one_column(
         left, across = LEFT / width + wide * (x - low) / (high - low), wide * (u - x) / (high - low)
         tall = (DIAGRAM - GAP) / height
         panels = [figure.add_axes((left, (top - DIAGRAM * (k + 1)) / height, across, tall)) for k in range(3)]
-        diagram_panels(panels, forces, scene.sketch.values, scene.scale, scene.written)
-        length = _numbers((forces.pieces[0].start, forces.pieces[-1].end), scene.sketch.values)
+        diagram_panels(panels, forces, scene.bare.values, scene.scale, scene.written)
+        length = _numbers((forces.pieces[0].start, forces.pieces[-1].end), scene.bare.values)
         for k, panel in enumerate(panels):
             panel.set_xlim(*length)
             panel.tick_params(labelbottom=k == 2, labelleft=number == 0)
@@ -369,67 +174,10 @@ def _in_one_column(
             panel.set_ylim(*(reach[::-1] if turned else reach))
 
 
-def height_of(scene: StaticScene) -> float:
-    """Height of the picture, by the proportions of the structure [inches]."""
-    places = np.array([*scene.sketch.points.values(), *(tip for tip, _, _, _ in scene.forces)])
-    wide, tall = np.ptp(places, axis=0) + 0.35 * scene.sketch.extent if len(places) else (1.0, 1.0)
-    return float(np.clip(WIDTH * tall / wide, LOWEST, 8.0))
-
-
 def missing_values(model: Model) -> list[str]:
     """The parameters without a value."""
     values = model.exact_parameters()
     return [name for name in model.parameters if name not in values]
-
-
-def draw_structure(panel: Any, scene: StaticScene) -> None:
-    """Bodies, supports, loads in red, reactions in green, member forces in blue (tension) and red (compression)."""
-    sketch = scene.sketch
-    draw_model(panel, sketch)
-    for load, name in scene.spreads():
-        _spread(panel, scene, load, name)
-    for tip, force, color, label in scene.forces:
-        if math.hypot(*force) > tolerances.COMPUTED * scene.largest:
-            vector = scene.length(force)
-            arrow(panel, tip, vector, color=color, label=label, outward=is_freer_outward(scene.lines, tip, vector))
-        elif label and color == REACTION:
-            name_beside(panel, label, tip, color)
-    for at, sense, color, label in scene.couples():
-        if abs(sense) > tolerances.COMPUTED * scene.largest_value:
-            moment_arc(panel, sketch, at, sense, color=color, label=label)
-        elif label and color == REACTION:
-            name_beside(panel, label, at, color)
-    _members(panel, scene)
-
-
-def _spread(panel: Any, scene: StaticScene, load: SpreadLoad, name: str) -> None:
-    """A line load, its largest arrow half as long as the longest of a force."""
-    ends = np.array([scene.sketch.numbers(q[:2]) for q in (load.at_start, load.at_end)])
-    highest = float(np.max(np.linalg.norm(ends, axis=1)))
-    if not highest:
-        return
-    (a, b), (c, d) = ends * (0.5 * ARROW * scene.sketch.extent / highest)
-    places = scene.sketch.position(load.start), scene.sketch.position(load.end)
-    distributed(panel, places, ((float(a), float(b)), (float(c), float(d))), label=name)
-
-
-def _members(panel: Any, scene: StaticScene) -> None:
-    """The force of every member of a truss, along it, and the meaning of the colours."""
-    drawn = False
-    for truss, member, (first, second) in scene.statics.system.scope.model.truss_members:
-        reaction = scene.statics.by_name.get(f"tension({truss}, {member})")
-        if reaction is None or reaction.value is None:
-            continue
-        (value,) = scene.sketch.numbers((reaction.value,))
-        a, b = (np.array(scene.sketch.position((node, Vector.ZERO))) for node in (first, second))
-        small = abs(value) < tolerances.COMPUTED * scene.largest
-        color = "#808080" if small else TENSION if value > 0 else COMPRESSION
-        name_along(panel, "0" if small else scene.label(reaction.value), (a, b), color)
-        panel.plot(*np.array([a, b]).T, color=color, linewidth=1.8, zorder=2)
-        drawn = True
-    if drawn:
-        unit = f" [{scene.scale.unit('N')}]" if scene.known else ""
-        panel.set_title(f"members{unit}: tension blue, compression red", fontsize=9, loc="right", color="#505050")
 
 
 # -------- diagrams --------------------------------------------------------------------------------------------
@@ -479,6 +227,54 @@ def diagram_panels(
     panels[-1].set_xlabel("x [m]" if written is None else "x")
 
 
+IN_SPACE = (("N",), ("V_y", "V_z"), ("T",), ("M_y", "M_z"))
+"""Components of the section forces in space that one panel shows."""
+COLORS_IN_SPACE = ("#2457a6", "#c77c11")
+COUPLES = ("T", "M_y", "M_z")
+
+
+def in_space(
+    panels: Sequence[Any],
+    forces: SectionsInSpace,
+    values: Mapping[Node, float],
+    scale: Scale = SI,
+    written: Setter | None = None,
+) -> None:
+    """N, V_y and V_z, T, M_y and M_z along one body in space, a panel for each group; arguments as `diagram_panels`."""
+    places = _numbers([forces.pieces[0].start, *(piece.end for piece in forces.pieces)], values)
+    for panel, kinds in zip(panels, IN_SPACE, strict=True):
+        points: list[tuple[Any, ...]] = []
+        for color, kind in zip(COLORS_IN_SPACE, kinds, strict=False):
+            curves = [_sampled(piece, piece.coefficients[kind], values, scale) for piece in forces.pieces]
+            _filled(panel, curves, color, f"${kind}$" if len(kinds) > 1 else "")
+            points += _at_the_ends(forces, kind, curves, written)
+        upright = panel.get_xaxis_transform()
+        panel.vlines(places, 0, 1, transform=upright, color="#b0b0b0", linewidth=0.6, linestyle=":", zorder=0.5)
+        _labels(panel, points)
+        unit = "" if written is not None else f" [{scale.unit('N m' if kinds[0] in COUPLES else 'N')}]"
+        panel.set_ylabel(f"{', '.join(kinds)} of {forces.axis.body}{unit}", fontsize=8)
+        if written is not None:
+            panel.set_yticks([0])
+        if len(kinds) > 1:
+            panel.legend(loc="upper right", bbox_to_anchor=(1.0, 1.16), fontsize=7, ncols=2)
+    panels[-1].set_xlabel("x [m]" if written is None else "x")
+
+
+def _at_the_ends(
+    forces: SectionsInSpace, kind: str, curves: Sequence[tuple[np.ndarray, np.ndarray]], written: Setter | None
+) -> Iterable[tuple[Any, ...]]:
+    """(x, value) at the ends of each piece, and the formula where formulas stand for numbers."""
+    for piece, (x, y) in zip(forces.pieces, curves, strict=True):
+        for k, s in ((0, 0), (-1, piece.end - piece.start)):
+            if written is None:
+                yield x[k], y[k]
+            else:
+                value: Scalar = 0
+                for c in reversed(piece.coefficients[kind]):
+                    value = value * s + c
+                yield x[k], y[k], label_of(written, forces.axis.sizes.shortest(value))
+
+
 def _formulas(
     forces: SectionForces, kind: str, values: Mapping[Node, float], written: Setter
 ) -> list[tuple[float, float, str]]:
@@ -493,14 +289,7 @@ def _formulas(
 def _formula(written: Setter, forces: SectionForces, value: Scalar) -> str:
     """A formula between dollars; "" of a long one."""
     short = forces.sizes.shortest(value)
-    if text_size(short) > LONGEST_LABEL:
-        return ""
-    return f"${plain_tex(written, short)}$"
-
-
-def plain_tex(written: Setter, x: Scalar) -> str:
-    """A formula as matplotlib sets it, which knows one kind of fraction."""
-    return re.sub(r"\\[td]frac", r"\\frac", written.set(x).tex)
+    return label_of(written, short)
 
 
 def influence_panel(panel: Any, line: InfluenceLine, values: Mapping[Node, float]) -> None:
@@ -534,17 +323,25 @@ def _extreme(extreme: Extreme, values: Mapping[Node, float], scale: Scale) -> tu
 
 def _curve(piece: SectionPiece, kind: str, values: Mapping[Node, float], scale: Scale) -> tuple[np.ndarray, np.ndarray]:
     """Points of one piece."""
+    return _sampled(piece, piece.coefficients(kind), values, scale)
+
+
+def _sampled(
+    piece: SectionPiece | PieceInSpace, series: Sequence[Scalar], values: Mapping[Node, float], scale: Scale
+) -> tuple[np.ndarray, np.ndarray]:
+    """Points of a polynomial over one piece."""
     start, end = _numbers((piece.start, piece.end), values)
     s = np.linspace(0.0, end - start, FINE)
-    coefficients = [scale(c) for c in _numbers(piece.coefficients(kind), values)]
+    coefficients = [scale(c) for c in _numbers(series, values)]
     return start + s, sum(c * s**k for k, c in enumerate(coefficients))  # type: ignore[return-value]
 
 
-def _filled(panel: Any, curves: Iterable[tuple[np.ndarray, np.ndarray]], color: str) -> None:
+def _filled(panel: Any, curves: Iterable[tuple[np.ndarray, np.ndarray]], color: str, label: str = "") -> None:
     panel.axhline(0, color="#505050", linewidth=1.2)
-    for x, y in curves:
+    for k, (x, y) in enumerate(curves):
         panel.fill_between(x, y, 0, color=color, alpha=0.18, linewidth=0)
-        panel.plot(np.concatenate([[x[0]], x, [x[-1]]]), np.concatenate([[0], y, [0]]), color=color, linewidth=1.4)
+        ends = np.concatenate([[x[0]], x, [x[-1]]]), np.concatenate([[0], y, [0]])
+        panel.plot(*ends, color=color, linewidth=1.4, label=label if label and not k else None)
 
 
 def _labels(panel: Any, points: Iterable[tuple[Any, ...]]) -> None:

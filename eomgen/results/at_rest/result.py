@@ -60,6 +60,9 @@ from eomgen.proof import (
     certify_equilibria,
     certify_structure,
     diagrams_drawn,
+    space_sections_drawn,
+    state_of,
+    structure_drawn,
 )
 from eomgen.resources import doing
 from eomgen.results.at_rest.section_steps import (
@@ -69,6 +72,7 @@ from eomgen.results.at_rest.section_steps import (
     reported_sections,
     section_payload,
     section_steps,
+    sections_in_space,
     sections_of,
 )
 from eomgen.results.at_rest.steps import contacts_step, reported_work, statics_derivation, sum_name
@@ -172,8 +176,16 @@ class Statics(Result):
                 yield reported
 
     def drawn_checks(self, panels: Sequence[DrawnPanel]) -> Iterable[Check]:
-        """N, V, M and the influence line as they are drawn, from the other end and by unit loads."""
-        return diagrams_drawn(self.found, self.sections.found, self.influence, panels) if panels else ()
+        """N, V, M and the influence line as they are drawn, from the other end and by unit loads; the arrows."""
+        from eomgen.results.at_rest.pictures import missing_values, pushes_on
+
+        if not panels:
+            return
+        yield from diagrams_drawn(self.found, self.sections.found, self.influence, panels)
+        if self.model.space == "space" and not missing_values(self.model):
+            beams = sections_in_space(self.found.balance)
+            yield from space_sections_drawn(self.found, state_of(self.found), beams, panels)
+        yield from structure_drawn(pushes_on(self.found))
 
     @cached_property
     def derivation(self) -> Document:
@@ -226,11 +238,7 @@ class Statics(Result):
 
     @property
     def picture(self) -> Picture:
-        """The structure with its loads and reactions, N, V and M.
-
-        Raises:
-            RunFailed: it is in space.
-        """
+        """The structure with its loads and reactions, N, V and M."""
         from eomgen.results.at_rest.pictures import statics_picture
 
         return statics_picture(self.found, self.sections, self.influence)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from typing import Any
 
 from eomgen.documents import Formula, Grid, Law, Name, Side, Statement, Step, cell_text, prose
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.free_bodies import Reactions
-from eomgen.mechanics.statics import KINDS, InfluenceLine, SectionForces, SectionPiece
+from eomgen.mechanics.statics import KINDS, InfluenceLine, SectionForces, SectionPiece, SectionsInSpace
 from eomgen.model import is_node
 from eomgen.proof import ReportedSections
 from eomgen.symbolic.expression import Node, Scalar
@@ -50,6 +51,17 @@ def sections_of(reactions: Reactions) -> Sections:
             if NO_LINE not in error.what:
                 reasons[body] = f"{error.what}; {error.fix}" if error.fix else error.what
     return Sections(found, reasons)
+
+
+def sections_in_space(reactions: Reactions) -> dict[str, SectionsInSpace]:
+    """Section forces of every body in space that is a beam and not a rod of a truss alone."""
+    system = reactions.balance.system
+    found = {}
+    for link in system.motion.links if system.scope.model.space == "space" else ():
+        if not is_node(link.name):
+            with suppress(DerivationError):
+                found[link.name] = SectionsInSpace.of(reactions, link.name)
+    return found
 
 
 def section_steps(sections: Sections) -> tuple[Step, ...]:

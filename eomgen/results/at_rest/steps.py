@@ -5,6 +5,7 @@ StaticReactions -> Document: structure and count, every reaction, each by virtua
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -49,7 +50,7 @@ from eomgen.mechanics.statics import (
 from eomgen.model import BodyPoint, Couple, PointForce, SpreadLoad, is_node
 from eomgen.proof import ReportedBlock, ReportedMotion, ReportedWork
 from eomgen.symbolic.expression import Fraction, Node, Scalar, Vector, is_zero
-from eomgen.symbolic.print import Symbol, to_text
+from eomgen.symbolic.print import Notation, Symbol, to_text, upright
 
 METHOD = "statics"
 SymbolsByName = Mapping[str, Node]
@@ -102,6 +103,16 @@ def letter_of_reaction(name: str) -> str:
     owner, *more = rest.removesuffix(")").replace(".", "_").replace(", ", "_").replace("-", "_").split("_")
     what, *axes = kind.removeprefix("reaction_").split("_")
     return reaction_name(what, owner, *more, *axes)
+
+
+_LETTER = re.compile(r"[A-Za-z]\d*")
+
+
+def letter_of_load(name: str, notation: Notation) -> str:
+    """The letter of a load in LaTeX: its declared symbol, F or F1 as in formulas, else its name upright."""
+    if name in notation.symbols or _LETTER.fullmatch(name):
+        return notation.latex(name)
+    return upright(name)
 
 
 def _untaken(name: str, taken: set[str]) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
@@ -20,7 +19,6 @@ from eomgen.documents import (
     document_of,
     draw_scene,
     four_figures,
-    is_freer_outward,
     narrow_grid,
     notation_of,
     own_symbol,
@@ -32,21 +30,24 @@ from eomgen.mechanics.free_bodies import Balance, CutForce, ForceKind, forces_on
 from eomgen.model import AtRest, ModelOrPath, Values, WrittenEquation, equation_in
 from eomgen.proof import Certificate, ReportedForce, certify, cuts_reported
 from eomgen.resources import doing
-from eomgen.results.at_rest.steps import letter_of_reaction
+from eomgen.results.at_rest.steps import letter_of_load, letter_of_reaction
 from eomgen.results.bodies_cut_free.cut_state import CutState, cut_state
 from eomgen.scene import (
-    CutArrow,
+    ARROW,
     Drawing,
+    DrawnArrow,
     Scene,
     SceneNumbers,
     frame_at,
+    is_freer_outward,
+    never_short,
     plane_drawing,
     scene_of_cut_body,
     scene_of_system,
     space_drawing,
 )
 from eomgen.study import model_to_study
-from eomgen.symbolic.expression import Fraction, Scalar, Vector, is_zero
+from eomgen.symbolic.expression import Scalar, Vector, is_zero
 from eomgen.symbolic.numeric import tolerances
 from eomgen.symbolic.print import Notation, Setter, Symbol, text_size, to_text
 
@@ -311,9 +312,8 @@ def _entry(force: BodyForce) -> dict[str, Any]:
 COLUMNS, SIDE, TITLE = 3, 3.1, 0.3  # panels side by side; their width; height of what is written [inches]
 SYMBOL = 0.045  # size of symbols, of the extent
 TALLEST, FLATTEST = 1.25, 0.5  # of a panel, height over width
-LONGEST, SHORTEST = 0.2, 0.55  # of arrows, of the extent; of the longest
+SHORTEST = 0.55  # of arrows, of the longest
 SHORT = 16  # characters of a formula that stands for the name of a load
-_LETTER = re.compile(r"[A-Za-z]\d*")
 
 
 def free_bodies_picture(state: CutState, bodies: Mapping[str, FreeBody]) -> Picture:
@@ -351,21 +351,17 @@ def _drawn(scene: Scene, state: CutState) -> Drawing:
     return (plane_drawing if scene.plane else space_drawing)(numbers, symbol=SYMBOL)
 
 
-def _arrows(forces: Sequence[BodyForce], lines: Sequence[np.ndarray], extent: float) -> Iterator[CutArrow]:
+def _arrows(forces: Sequence[BodyForce], lines: Sequence[np.ndarray], extent: float) -> Iterator[DrawnArrow]:
     """The forces, along the directions in which their letters are positive."""
     largest = max((abs(force.value or 0.0) for force in forces if not force.turns), default=0.0) or 1.0
     for force in forces:
-        way = np.array([*force.direction, 0.0][:3])
-        share = 1.0 if force.value is None or force.turns else abs(force.value) / largest
-        length = SHORTEST + (1 - SHORTEST) * min(1.0, share)
-        x, y = (float(v) for v in LONGEST * extent * way[:2])
-        outward = not lines or not is_freer_outward(lines, (force.at[0], force.at[1]), (-x, -y))
-        cut = force.kind == ForceKind.REACTION
-        yield CutArrow(force.name, _exact(force.at), _exact(length * way), force.turns, outward, cut)
-
-
-def _exact(numbers: Sequence[float] | np.ndarray) -> Vector:
-    return Vector(Fraction(float(x)) for x in [*numbers, 0.0][:3])
+        size = largest if force.value is None or force.turns else abs(force.value)
+        way = never_short(size, largest, SHORTEST) * np.array(force.direction)
+        at = (force.at[0], force.at[1])
+        x, y = (float(v) for v in ARROW * extent * way[:2])
+        outward = not lines or not is_freer_outward(lines, at, (-x, -y))
+        role = "reaction" if force.kind == ForceKind.REACTION else "force"
+        yield DrawnArrow(force.name, force.at, way, role, force.name, force.turns, outward)
 
 
 # -------- letters ---------------------------------------------------------------------------------------------
@@ -381,8 +377,8 @@ def letter_of_force(balance: Balance, push: CutForce) -> str:
         own = None if named is None else own_symbol(balance, named)
         return own.tex if own is not None else notation.latex(letter_of_reaction(push.name))
     if push.kind in (ForceKind.WEIGHT, ForceKind.APPLIED):
-        name = notation.latex(push.name) if _LETTER.fullmatch(push.name) else rf"\mathrm{{{push.name}}}"
-        return _formula(push, notation) or ("G" if push.kind == ForceKind.WEIGHT else name.replace("_", r"\_"))
+        name = "G" if push.kind == ForceKind.WEIGHT else letter_of_load(push.name, notation)
+        return _formula(push, notation) or name
     owner = push.name.partition("(")[2].rstrip(")") or push.name
     return notation.latex(f"{'M' if push.turns else 'F'}_{owner}")
 

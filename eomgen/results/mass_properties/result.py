@@ -6,7 +6,7 @@ Model -> Inertia: masses, mass centres, tensors, principal axes of its bodies, a
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import field
+from dataclasses import field, replace
 from functools import cached_property
 from itertools import chain
 from typing import Any
@@ -31,7 +31,6 @@ from eomgen.documents import (
     data_step,
     document_of,
     draw_model,
-    name_beside,
     picture_of_scene,
     prose,
 )
@@ -43,7 +42,7 @@ from eomgen.mechanics.start import Start
 from eomgen.model import ModelOrPath, Values, about_axis, model_at, nearest, polar, second_moments
 from eomgen.proof import Certificate, Stated, mass_checks
 from eomgen.resources import doing
-from eomgen.scene import scene_of_inertia
+from eomgen.scene import Mark, axis_marks, center_marks, exact_vector, scene_of_inertia
 from eomgen.study import study_of
 from eomgen.symbolic.expression import (
     Matrix,
@@ -603,9 +602,6 @@ def _conventions() -> Step:
 # System, principal axes -> a picture: bodies, mass centres, principal axes, in space the ellipsoid of inertia.
 
 
-CENTER, AXIS = "#b03a2e", "#2e7d4f"
-
-
 def inertia_picture(
     system: System, axes: Mapping[str, Sequence[Sequence[float]]], moments: Mapping[str, Sequence[float]]
 ) -> Picture:
@@ -620,16 +616,11 @@ def inertia_picture(
     model = system.scope.model
     if model.space == "space":
         return picture_of_scene(scene_of_inertia(system, values_at_start(system), axes, moments))
-    sketch = Sketch(system, values_at_start(system))
-
-    def fill(figure: Any) -> None:
-        panel = figure.subplots()
-        draw_model(panel, sketch)
-        for body, rows in axes.items():
-            if body in system.motion.index:
-                _body(panel, sketch, body, np.array(rows))
-
-    return Picture((8, 6), fill, model.name)
+    bare = Sketch(system, values_at_start(system))
+    known = {body: rows for body, rows in axes.items() if body in system.motion.index}
+    marks = (mark for body, rows in known.items() for mark in _axes(bare, body, np.array(rows)))
+    sketch = replace(bare, more=tuple(marks))
+    return Picture((8, 6), lambda figure: draw_model(figure.subplots(), sketch), model.name)
 
 
 def values_at_start(system: System) -> dict[Node, float]:
@@ -640,16 +631,12 @@ def values_at_start(system: System) -> dict[Node, float]:
     return {symbols.t: 0.0} | moving | {node: numbers[name] for name, node in symbols.parameters.items()}
 
 
-def _body(panel: Any, sketch: Sketch, body: str, rows: np.ndarray) -> None:
-    """The mass centre as a cross, the principal axes in the plane as dashed lines."""
-    center = sketch.place(SystemInertia(sketch.system.motion).in_ground(body).com)
+def _axes(sketch: Sketch, body: str, rows: np.ndarray) -> Iterator[Mark]:
+    """The mass centre, and the principal axes in the plane through it."""
+    center = sketch.spot(SystemInertia(sketch.system.motion).in_ground(body).com)
     pose = sketch.system.motion.link(body).pose
     turn = np.array([sketch.numbers(row[:2]) for row in pose.R[:2]])
-    for number, row in enumerate(rows, start=1):
-        along = turn @ row[:2]
-        if np.linalg.norm(along) > 0.5:
-            ends = np.array([center - 0.45 * sketch.extent * along, center + 0.45 * sketch.extent * along])
-            panel.plot(*ends.T, color=AXIS, linewidth=1.0, linestyle=(0, (6, 3)), zorder=4)
-            name_beside(panel, str(number), (float(ends[1, 0]), float(ends[1, 1])), AXIS)
-    panel.plot(*center, marker="x", markersize=7, markeredgewidth=2, color=CENTER, zorder=7)
-    name_beside(panel, "C", center, CENTER)
+    seen = {str(k): turn @ row[:2] for k, row in enumerate(rows, start=1)}
+    half = {name: 0.45 * sketch.extent * along for name, along in seen.items() if np.linalg.norm(along) > 0.5}
+    yield from axis_marks(body, exact_vector(center), {name: exact_vector(v) for name, v in half.items()}, 0)
+    yield from center_marks([("C", exact_vector(center))], body)

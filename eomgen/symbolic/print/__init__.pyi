@@ -55,6 +55,9 @@ from eomgen.symbolic.print.names import Symbol as Symbol
 # Words in an index, one style for all: letters slanted, words upright, max -> \mathrm{max}
 from eomgen.symbolic.print.names import index_latex as index_latex
 
+# A word in roman type inside a formula
+from eomgen.symbolic.print.names import upright as upright
+
 # A sympy expression as a scalar of the symbols' graph
 from eomgen.symbolic.print.sympy_form import scalar_from_sympy as scalar_from_sympy
 
