@@ -16,7 +16,8 @@ from eomgen.mechanics.free_bodies.reactions import Reactions
 from eomgen.mechanics.free_bodies.structure import Structure
 from eomgen.mechanics.statics.forces_in_sections import SectionForces
 from eomgen.mechanics.statics.influence import InfluenceLine
-from eomgen.results.at_rest.pictures import diagram_panels, influence_panel
+from eomgen.proof import structure_drawn
+from eomgen.results.at_rest.pictures import diagram_panels, influence_panel, pushes_on
 
 BEAM = """
 eomgen = 1
@@ -178,3 +179,78 @@ load = { kind = "distributed", body = "beam", between = ["A", "B"], intensity = 
     places = np.column_stack(M.lines[1].get_data())
     assert places[:, 1].max() == pytest.approx(1 / 8, rel=1e-2)
     assert len(named(V)) == 2 and not named(N)
+
+
+def test_what_is_drawn_on_a_structure_holds_it_at_rest_by_the_numbers_beside_it(drawn):
+    """sum F = 0, sum r x F + C = 0 of arrows, couples and line loads; one turned, moved or misnamed is seen"""
+    pushes = list(pushes_on(drawn[0].found))
+    assert [check.status for check in structure_drawn(pushes)] == ["holds"]
+    load = next(k for k, push in enumerate(pushes) if push.words.startswith("F = 1"))
+    for change in (
+        {"way": -pushes[load].way},
+        {"at": pushes[load].at + np.array([0.1, 0.0, 0.0])},
+        {"words": "F = 2 N"},
+    ):
+        wrong = [*pushes[:load], replace(pushes[load], **change), *pushes[load + 1 :]]
+        assert [check.status for check in structure_drawn(wrong)] == ["fails"]
+
+
+BRACKET = """
+eomgen = 1
+name = "bracket"
+space = "space"
+[bodies.bracket]
+points = { A = [0, 0, 0], B = [2, 0, 0], C = [2, 1.5, 0] }
+[constraints.A]
+kind = "clamp"
+points = ["bracket.A"]
+[forces.F]
+kind = "force"
+point = "bracket.C"
+force = [0, 0, -800]
+[forces.q]
+kind = "distributed"
+body = "bracket"
+between = ["A", "B"]
+intensity = [0, 200, 0]
+"""
+
+
+@pytest.fixture(scope="module")
+def bracket(tmp_path_factory):
+    """(statics of a bent bracket in space, its panels as they were saved)"""
+    found = eomgen.statics(eomgen.loads(BRACKET))
+    return found, found.picture.saved(tmp_path_factory.mktemp("drawn") / "bracket.svg")
+
+
+def test_a_structure_in_space_has_its_reactions_and_the_section_forces_of_its_beams(bracket):
+    """A = (0, -400, 800) N; along AB V = (400 .. 0, -800), T = -800 * 1.5, M_y = 800 * 2 .. 0, M_z = 200 * 2 .. 0"""
+    found, panels = bracket
+    drawn = {panel.y: panel for panel in panels}
+    due = {"V_y, V_z": ((400, 0), (-800, -800)), "T": ((-1200, -1200),), "M_y, M_z": ((1600, 0), (400, 0))}
+    for kinds, ends in due.items():
+        panel = next(panel for words, panel in drawn.items() if words.startswith(f"{kinds} of bracket ["))
+        along_ab = panel.curves[::2]
+        assert [tuple(curve.places[[1, -2], 1]) for curve in along_ab] == [pytest.approx(e, abs=1e-9) for e in ends]
+    words = {push.words for push in pushes_on(found.found)}
+    assert {"reaction_x(A) = 0", "reaction_y(A) = 400 N", "reaction_z(A) = 800 N", "F = 800 N", "q = 200 N/m"} <= words
+    assert {"reaction_couple_x(A) = 1200 N m", "reaction_couple_y(A) = 1600 N m"} <= words
+    assert {check.status for check in found.drawn_checks(panels)} == {"holds"}
+
+
+def test_a_diagram_in_space_that_shows_another_thing_is_seen(bracket):
+    """A curve turned over, in another unit, the two of a panel exchanged, another number beside one"""
+
+    def turned(panel):
+        return replace(panel, curves=tuple(replace(c, places=c.places * [1, -1]) for c in panel.curves))
+
+    changes = (
+        turned,
+        lambda panel: replace(panel, y=panel.y.replace("[N", "[kN")),
+        lambda panel: replace(panel, curves=(*panel.curves[2:], *panel.curves[:2])),
+        lambda panel: replace(panel, names=tuple((f"{text}1", place) for text, place in panel.names)),
+    )
+    found, panels = bracket
+    for change in changes:
+        shown = [change(panel) if panel.y.startswith("M_y") else panel for panel in panels]
+        assert "fails" in {check.status for check in found.drawn_checks(shown)}

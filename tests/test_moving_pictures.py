@@ -463,3 +463,27 @@ def test_weights_springs_and_reactions_are_arrows_of_one_scale():
     assert away["weight(rod)"] == pytest.approx([0, -long / 2])
     (shaft,) = (s.path[0, 0] for s in movie.drawing.strokes if (s.role, s.of, s.filled) == ("reaction", "rod", False))
     assert shaft == pytest.approx([3, 1.5 - long / 2])
+
+
+def test_a_rope_pulls_with_its_tension_what_hangs_on_it():
+    """T1 = m1 g (4 m2 + M)/(2 m1 + 2 m2 + M) up at the left load, down at the rim, in the scale of the weights; and
+    so on the right. An arrow upside down is seen by the way that reads the picture."""
+    run = eomgen.simulate(eomgen.load(MODELS / "atwood.toml"), time=0.2, samples=3)
+    movie = movie_of(run, run.t, forces=True)
+    strokes = [s for s in movie.drawing.strokes if s.role in ("force", "reaction")]
+    ways = [
+        (head.of, shaft.path[0, 0], head.path[0, 0]) for shaft, head in zip(strokes[::2], strokes[1::2], strict=True)
+    ]
+    weights = {of: begin[1] - tip[1] for of, begin, tip in ways if of.startswith("weight(")}
+    pulls = {tuple(np.round(begin, 9)): tip - begin for of, begin, tip in ways if of == "string"}
+    left, right = weights["weight(left)"] * 7 / 8, weights["weight(right)"] * 9 / 8
+    due = {(-0.2, -1): left, (-0.2, 0): -left, (0.2, 0): -right, (0.2, -1): right}
+    assert set(pulls) == set(due)
+    for at, size in due.items():
+        assert pulls[at] == pytest.approx([0, size], rel=1e-6, abs=1e-9)
+    assert not [check for check in animate.movie_read_back(run, movie) if check.ok is False]
+    turned = [
+        s if s.of != "string" or s.role != "reaction" else replace(s, path=-s.path) for s in movie.drawing.strokes
+    ]
+    wrong = replace(movie, drawing=replace(movie.drawing, strokes=tuple(turned)))
+    assert [check for check in animate.movie_read_back(run, wrong) if check.ok is False]

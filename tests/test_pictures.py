@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 import eomgen
-from eomgen.documents.drawing import is_freer_outward, limits
+from eomgen.documents.drawing import limits
 from eomgen.documents.figures import four_figures, scale_of
 from eomgen.documents.space_drawing import drawing_at_rest
 from eomgen.model.reader import loads
 from eomgen.results.mass_properties.result import values_at_start
 from eomgen.scene import forms, plane_strokes
-from eomgen.scene.making import scene_of, scene_of_inertia
+from eomgen.scene.making import is_freer_outward, scene_of, scene_of_inertia
 from eomgen.scene.scene import Mark, drawn_start, frame_at
 from eomgen.scene.strokes import PictureSizes, SceneNumbers
 

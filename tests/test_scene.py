@@ -591,3 +591,98 @@ def test_a_pull_that_is_no_law_of_the_distance_is_a_cylinder_between_its_ends():
     assert [m.form.symbol for m in marks if m.of == "push" and m.role == "support"] == ["pin", "hinge"]
     (stroke,) = (s for s in drawing_at_rest(scene_of_system(system)).strokes if s.role == "cylinder")
     assert np.allclose(stroke.path[0, [0, -1]], [[1, 3], [2, 0.7]])
+
+
+BELT = """
+eomgen = 1
+space = "plane"
+parameters = { r = 0.1, R = 0.3, a = 1 }
+[coordinates]
+phi = 0
+psi = { dependent = true, near = 0 }
+[bodies.motor]
+shape = { kind = "disc", mass = 1, radius = "r" }
+joint = { kind = "revolute", angle = "phi" }
+[bodies.fan]
+shape = { kind = "disc", mass = 4, radius = "R" }
+joint = { kind = "revolute", at = ["a", 0], angle = "psi" }
+[constraints.belt]
+kind = "gear"
+bodies = ["motor", "fan"]
+ratio = "RATIO"
+"""
+
+
+def test_wheels_that_turn_together_apart_have_a_belt_and_others_none():
+    """Two tangents of length sqrt(a^2 - (R - r)^2) and both arcs, pi + 2 arcsin((R - r)/a) and the rest of 2 pi."""
+    scene = eomgen.loads(BELT.replace("RATIO", "R/r")).scene()
+    strokes = [s.path[0] for s in drawing_at_rest(scene).strokes if s.role == "string"]
+    lengths = sorted(float(np.sum(np.hypot(*np.diff(path, axis=0).T))) for path in strokes)
+    lean = math.asin(0.2 / 1.0)
+    due = [math.sqrt(1 - 0.2**2)] * 2 + [0.1 * (math.pi - 2 * lean), 0.3 * (math.pi + 2 * lean)]
+    assert lengths == pytest.approx(sorted(due), rel=1e-3)
+    for ratio in ("-R/r", "2"):
+        assert not [mark for mark in eomgen.loads(BELT.replace("RATIO", ratio)).scene().marks if mark.role == "string"]
+
+
+def test_two_strings_round_the_same_pulleys_are_one_belt():
+    """Their four ends on two pulleys are joined by an arc of each; one string alone is no belt."""
+    wheel = 'mass = 1\ninertia = 0.1\njoint = { kind = "revolute", at = [AT, 0], angle = "phi*K" }'
+    ends = ('{ body = "small", radius = "r", turn = "cw" }', '{ body = "large", radius = "R", turn = "cw" }')
+    strings = [
+        f'[constraints.s{k}]\nkind = "string"\npath = [{", ".join(ends[::way])}]\n' for k, way in ((1, 1), (2, -1))
+    ]
+    head = 'eomgen = 1\nspace = "plane"\nparameters = { r = 0.1, R = 0.3 }\ncoordinates = { phi = 0 }\n'
+    wheels = f"[bodies.small]\n{wheel.replace('AT', '0').replace('K', '1')}\n"
+    wheels += f"[bodies.large]\n{wheel.replace('AT', '1').replace('K', 'r/R')}\n"
+    for count, arcs in ((1, 0), (2, 2)):
+        marks = eomgen.loads(head + wheels + "".join(strings[:count])).scene().marks
+        assert len([mark for mark in marks if mark.role == "string" and mark.form.kind == "arc"]) == arcs
+
+
+def test_a_drive_between_two_bodies_is_a_cylinder_whose_length_stays():
+    """The rod comes out by what the way grows, 0.3 m; a force on the ground's guide is none."""
+    text = """eomgen = 1
+space = "plane"
+coordinates = { alpha = 0.3, s = 1 }
+[bodies.arm]
+mass = 2
+inertia = 0.4
+center = [0.4, 0]
+joint = { kind = "revolute", angle = "alpha" }
+[bodies.rod]
+shape = { kind = "particle", mass = 1 }
+joint = { kind = "prismatic", on = "arm", axis = [1, 0], displacement = "s", force = 30 }
+"""
+    scene = eomgen.loads(text).scene()
+    state = drawn_start(scene.system)
+    longer = state.x + np.array([0, 0.3, 0, 0])
+    frames = np.array([frame_at(scene, type(state)(0.0, x, state.p)) for x in (state.x, longer)])
+    (stroke,) = (s for s in plane_strokes.plane_drawing(SceneNumbers(scene, frames)).strokes if s.role == "cylinder")
+    barrels = np.linalg.norm(stroke.path[:, 4] - stroke.path[:, 3], axis=1)
+    assert barrels[0] == pytest.approx(barrels[1] * 1.0, rel=1e-2) and 0.4 < barrels[0] < 0.9
+    ways = np.linalg.norm(stroke.path[:, -1] - stroke.path[:, 0], axis=1)
+    assert ways == pytest.approx([1.0, 1.3])
+    assert not [m for m in eomgen.load(MODELS / "cart_pole.toml").scene().marks if m.role == "cylinder"]
+
+
+def test_what_turns_on_a_hinge_without_a_length_is_a_wheel():
+    """A flywheel of which one knows the inertia alone; not a drum, whose rim is known."""
+    text = """eomgen = 1
+space = "plane"
+parameters = { r = 0.2 }
+coordinates = { phi = 0 }
+bodies.wheel = { mass = 2, inertia = 0.1, joint = { kind = "revolute", angle = "phi" } }
+"""
+    rope = """[bodies.load]
+mass = 1
+joint = { kind = "placed", at = ["r", "-1 + r*phi"] }
+[constraints.rope]
+kind = "string"
+path = [{ body = "wheel", radius = "r", turn = "cw" }, "load.origin"]
+"""
+    for more, symbols in (("", ["rotor"]), (rope, [])):
+        marks = eomgen.loads(text + more).scene().marks
+        assert [
+            m.form.symbol for m in marks if m.of == "wheel" and m.role == "body" and m.form.kind == "symbol"
+        ] == symbols

@@ -36,8 +36,6 @@ from eomgen.documents.document import plain_document as plain_document
 # The document with symbols for names that are not the model's: of its reactions
 from eomgen.documents.document import with_symbols as with_symbols
 from eomgen.documents.drawing import INK as INK
-from eomgen.documents.drawing import LOAD as LOAD
-from eomgen.documents.drawing import REACTION as REACTION
 
 # One stroke, in its layer
 from eomgen.documents.drawing import artist_of as artist_of
@@ -275,25 +273,25 @@ from eomgen.documents.sheet import question_steps as question_steps
 
 # Step with the words of the problem
 from eomgen.documents.sheet import statement_step as statement_step
-from eomgen.documents.sketch import PagePoint as PagePoint
+from eomgen.documents.space_drawing import PagePoint as PagePoint
 
 # A system in one configuration, in numbers
-from eomgen.documents.sketch import Sketch as Sketch
-
-# A sketch on matplotlib axes, which have equal scales and no frame
-from eomgen.documents.sketch import draw_model as draw_model
-
-# A name written along a line; the others keep off it
-from eomgen.documents.sketch import name_along as name_along
+from eomgen.documents.space_drawing import Sketch as Sketch
 
 # A scene in space on matplotlib axes; `show` sets it to another of its frames
 from eomgen.documents.space_drawing import SpacePicture as SpacePicture
+
+# A sketch on matplotlib axes, which have equal scales and no frame
+from eomgen.documents.space_drawing import draw_model as draw_model
 
 # A scene at its first frame, on matplotlib axes with equal scales and no frame
 from eomgen.documents.space_drawing import draw_scene as draw_scene
 
 # A scene at the start of its model, with its dimensions
 from eomgen.documents.space_drawing import drawing_at_rest as drawing_at_rest
+
+# A name written along a line; the others keep off it
+from eomgen.documents.space_drawing import name_along as name_along
 
 # Height over width of the page of a drawing
 from eomgen.documents.space_drawing import page_shape as page_shape

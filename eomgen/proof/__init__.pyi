@@ -62,6 +62,9 @@ from eomgen.proof.drawn_panels import panels_of as panels_of
 # A force, a couple or a line load as it is drawn
 from eomgen.proof.drawn_structure import ReportedPush as ReportedPush
 
+# Check of every panel of components of a beam in space
+from eomgen.proof.drawn_structure import space_sections_drawn as space_sections_drawn
+
 # Check of all arrows of a picture together
 from eomgen.proof.drawn_structure import structure_drawn as structure_drawn
 
@@ -172,9 +175,6 @@ from eomgen.proof.runs import answered_otherwise as answered_otherwise
 
 # Check the equations of motion, the small motions against differences of these, and what is reported of them
 from eomgen.proof.small_motions import certify_small_motions as certify_small_motions
-
-# Check of every panel of components of a beam in space
-from eomgen.proof.space_sections import space_sections_drawn as space_sections_drawn
 
 # States in motion at which every constraint holds, positions and speeds, by where dependent coordinates are free
 from eomgen.proof.states import consistent_states as consistent_states

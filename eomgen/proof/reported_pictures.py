@@ -436,23 +436,24 @@ class _Shown(InNumbers):
         rows = [row for row in self.system.constraints.rows if row.constraint == arrow.of]
         found: list[tuple[float, np.ndarray, np.ndarray]] = []
         for number, row in enumerate(rows, start=1):
-            names = (f"tension({arrow.of}, {number})", *((f"tension({arrow.of})",) if len(rows) == 1 else ()))
-            size = next((self.numeric.reactions[name] for name in names if name in self.numeric.reactions), np.nan)
+            name = f"tension({arrow.of}, {number})" if number > 1 else f"tension({arrow.of})"
+            size = self.numeric.reactions.get(name, np.nan)
             if not np.isfinite(float(size)):
                 return None
             for push, beside in zip(row.pushes, (*row.pushes[1:], None), strict=True):
                 if not isinstance(push, PointForce) or push.place[0] is None:
                     continue
                 turns = beside.couple if isinstance(beside, Couple) else (0, 0, 0)
-                arm = float(np.linalg.norm([float(x) for x in self.at(turns)]))
+                couple = float(size) * np.array([float(x) for x in self.at(turns)])
                 center = self.placed(self.motion.position(push.place))
                 pushed = self.carried(push.axes, self.vector(push.force), direction=True)
                 force = float(size) * np.array(pushed[: self.d], dtype=float)
-                off = arrow.begin - center
+                off, along, most = arrow.begin - center, arrow.tip - arrow.begin, float(np.linalg.norm(force)) or 1.0
+                arm = float(np.linalg.norm(couple)) / most
                 at = center + off * (arm / (float(np.linalg.norm(off)) or 1.0)) if arm else center
-                along = arrow.tip - arrow.begin
-                apart = np.linalg.norm(along) * np.linalg.norm(force) - along @ force
-                found.append((float(self._away(arrow, at) + apart), at, force))
+                apart = np.linalg.norm(along) - along @ force / most
+                turned = np.linalg.norm(np.cross([*off, 0][:3], [*force, 0][:3]) - couple) / most
+                found.append((float(self._away(arrow, at) + apart + turned), at, force))
         return min(found, key=lambda each: each[0])[1:] if found else None
 
     def _of_contact(self, owner: str) -> tuple[np.ndarray | None, np.ndarray] | None:

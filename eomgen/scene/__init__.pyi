@@ -9,28 +9,6 @@ from eomgen.scene.acting import resultants as resultants
 
 # A load along a line with its name
 from eomgen.scene.acting import spread_mark as spread_mark
-from eomgen.scene.arrows import DrawnArrow as DrawnArrow
-
-# The marks of arrows
-from eomgen.scene.arrows import arrow_marks as arrow_marks
-
-# Marks of centres, of rotation or of mass, by their names
-from eomgen.scene.arrows import center_marks as center_marks
-
-# Two or three numbers as a vector, as they are
-from eomgen.scene.arrows import exact_vector as exact_vector
-
-# True if an arrow on the page that begins at its place meets fewer lines than one that ends there
-from eomgen.scene.arrows import is_freer_outward as is_freer_outward
-
-# Length of an arrow in a picture without a scale: 1 of the largest, never below `shortest`
-from eomgen.scene.arrows import never_short as never_short
-
-# The scene of one body by itself, with its forces
-from eomgen.scene.arrows import scene_of_cut_body as scene_of_cut_body
-
-# A scene with more marks, each in the place that its role has
-from eomgen.scene.arrows import scene_with as scene_with
 
 # Scenes of the same bodies, one after the other, as one
 from eomgen.scene.frames_of_phases import joined as joined
@@ -43,21 +21,43 @@ from eomgen.scene.frames_of_phases import picture_reported as picture_reported
 
 # Forces, couples and line loads that the strokes of a drawing show at its first frame, with their words
 from eomgen.scene.frames_of_phases import pushes_reported as pushes_reported
+from eomgen.scene.making import DrawnArrow as DrawnArrow
+
+# The marks of arrows
+from eomgen.scene.making import arrow_marks as arrow_marks
 
 # Principal axes through a mass centre, each with its number at one end
 from eomgen.scene.making import axis_marks as axis_marks
 
+# Marks of centres, of rotation or of mass, by their names
+from eomgen.scene.making import center_marks as center_marks
+
+# Two or three numbers as a vector, as they are
+from eomgen.scene.making import exact_vector as exact_vector
+
+# True if an arrow on the page that begins at its place meets fewer lines than one that ends there
+from eomgen.scene.making import is_freer_outward as is_freer_outward
+
 # Every named point of the ground and of bodies by its whole name, ground axes [m]
 from eomgen.scene.making import named_points as named_points
 
+# Length of an arrow in a picture without a scale: 1 of the largest, never below `shortest`
+from eomgen.scene.making import never_short as never_short
+
 # Scene of a model
 from eomgen.scene.making import scene_of as scene_of
+
+# The scene of one body by itself, with its forces
+from eomgen.scene.making import scene_of_cut_body as scene_of_cut_body
 
 # Bodies in space and about their mass centres x I x = c, of half-axes sqrt(c/I_k): of a ball the ball
 from eomgen.scene.making import scene_of_inertia as scene_of_inertia
 
 # Scene of a system: its drawable elements at a state
 from eomgen.scene.making import scene_of_system as scene_of_system
+
+# A scene with more marks, each in the place that its role has
+from eomgen.scene.making import scene_with as scene_with
 
 # The strokes of a scene in the plane
 from eomgen.scene.plane_strokes import plane_drawing as plane_drawing

@@ -23,10 +23,9 @@ from eomgen.mechanics.free_bodies import Axes, Effect, Structure, numeral
 from eomgen.mechanics.kinematics import BodyLink, SystemScene
 from eomgen.mechanics.statics import StaticReaction, WorkEquation
 from eomgen.model import UniformField
-from eomgen.scene.arrows import center_marks
 from eomgen.scene.bodies import parameters_as_drawn
 from eomgen.scene.forms import ArrowForm, CoupleForm, SymbolForm
-from eomgen.scene.making import scene_of_system
+from eomgen.scene.making import center_marks, scene_of_system
 from eomgen.scene.plane_strokes import plane_drawing
 from eomgen.scene.scene import Mark, Scene
 from eomgen.scene.space_strokes import space_drawing

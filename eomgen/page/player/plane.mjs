@@ -24,6 +24,17 @@ const hasSlots = mark => Object.values(mark).some(function slotted(v) {
     return Array.isArray(v) && (v.length === 1 && Number.isInteger(v[0]) || v.some(slotted));
 });
 
+/** The part of its way that the cylinder of a drive takes: it has one length along the motion. */
+export const barrel = (mark, size) => Math.min(0.55*(mark.longest ?? size)/(size || 1), 0.9);
+
+/** The longest way of each cylinder in some frames. */
+export function longestWays(scene, frames) {
+    for (const mark of scene.marks) if (mark.kind === "cylinder") {
+        const sizes = frames.map(frame => Math.hypot(...spotIn(frame, mark.a).map((v, i) => v - numberIn(frame, mark.b[i]))));
+        mark.longest = Math.max(0, ...sizes.filter(Number.isFinite));
+    }
+}
+
 /** The place in the ground of a point of a frame, in the plane or in space. */
 export function inGround(scene, frame, k, point) {
     for (; k > 0; k = scene.frames[k].parent) {
@@ -64,6 +75,7 @@ export class PlaneView {
     /** How large the picture is, for frames of a run, and how long its arrows are. */
     fit(frames) {
         const { scene } = this, sizes = {};
+        longestWays(scene, frames);
         for (const frame of frames) for (const mark of scene.marks) {
             if (mark.kind !== "arrow" || !ARROWS.includes(mark.role)) continue;
             const size = Math.hypot(...mark.vector.map(v => numberIn(frame, v)));
@@ -206,7 +218,7 @@ export class PlaneView {
             case "rod": return (frame, value) => shown(made, outline([at(mark.a, value), at(mark.b, value)]));
             case "spring": return (frame, value) => shown(made, spring(at(mark.a, value), at(mark.b, value), this.unit, mark.side));
             case "damper": return (frame, value) => shown(made, damper(at(mark.a, value), at(mark.b, value), this.unit, mark.side));
-            case "cylinder": return (frame, value) => shown(made, cylinder(at(mark.a, value), at(mark.b, value), this.unit, mark.side));
+            case "cylinder": return (frame, value) => shown(made, cylinder(at(mark.a, value), at(mark.b, value), this.unit, mark, this.k));
             case "point": return (frame, value) => shown(made, circle(at(mark.at, value), 0.3*this.unit));
             case "track": return (frame, value) => shown(made, this._track(mark, value, at));
             case "symbol":
@@ -295,10 +307,10 @@ function damper(a, b, unit, side) {
     return outline([at(0, 0), at(c, 0)]) + outline([at(d, w), at(c, w), at(c, -w), at(d, -w)]) + outline([at(0.52*n, 0.8*w), at(0.52*n, -0.8*w)]) + outline([at(0.52*n, 0), at(n, 0)]);
 }
 
-function cylinder(a, b, unit, side) {
-    const [n, at] = along(a, b, side, unit), [w, r] = [0.6*unit, 0.2*unit], [c, d] = [0.06*n, 0.6*n];
+function cylinder(a, b, unit, mark, k) {
+    const [n, at] = along(a, b, mark.side, unit), [w, r] = [0.6*unit, 0.2*unit], d = barrel(mark, n/k)*n, c = 0.06*d;
     const barrel = outline([at(c, w), at(d, w), at(d, -w), at(c, -w), at(c, w)]);
-    return outline([at(0, 0), at(c, 0)]) + barrel + outline([at(0.5*n, w), at(0.5*n, -w)]) + outline([at(d, r), at(n, r), at(n, -r), at(d, -r)]);
+    return outline([at(0, 0), at(c, 0)]) + barrel + outline([at(0.85*d, w), at(0.85*d, -w)]) + outline([at(d, r), at(n, r), at(n, -r), at(d, -r)]);
 }
 
 function arrow(from, to, head) {

@@ -1,6 +1,6 @@
 // Scene, frame -> a picture in space, by three.js; z up. A drag turns it, the wheel or + and - bring it nearer.
 
-import { scaleOf } from "./plane.mjs";
+import { barrel, longestWays, scaleOf } from "./plane.mjs";
 
 const UNIT = 0.028;  // a symbol's unit, of the extent of what moves
 const FLATTEST = 0.12;  // the shortest half-axis of an ellipsoid that one sees, of its longest
@@ -46,6 +46,7 @@ export class SpaceView {
 
     fit(frames) {
         this.frames = frames;
+        longestWays(this.scene, frames);
         if (!this.three) return;
         this.extent = 0;
         this.away = null;
@@ -267,7 +268,8 @@ export class SpaceView {
             }
             case "spring": return this._spring(spot(mark.a), spot(mark.b), 0.6*unit, role);
             case "damper": case "cylinder": {
-                const a = spot(mark.a), b = spot(mark.b), half = a.clone().lerp(b, 0.6);
+                const a = spot(mark.a), b = spot(mark.b), size = a.distanceTo(b);
+                const half = a.clone().lerp(b, mark.kind === "cylinder" ? barrel(mark, size) : 0.6);
                 return [this._bar(a, half, 0.55*unit, role), this._bar(half, b, 0.2*unit, role)];
             }
             case "track": return this._track(mark, spot, role);
@@ -276,6 +278,13 @@ export class SpaceView {
             case "arrow": {
                 const scale = this.scales[scaleOf(mark)] ?? 0, v = spot(mark.vector).multiplyScalar(scale), tip = spot(mark.at);
                 return v.length() < 0.15*unit ? null : this._arrow(mark.outward ? tip : tip.clone().sub(v), v, unit, role);
+            }
+            case "load": {
+                const a = spot(mark.a), b = spot(mark.b), p = spot(mark.at_a), q = spot(mark.at_b), most = Math.max(p.length(), q.length()) || 1;
+                return [...Array(8).keys()].flatMap(i => {
+                    const v = p.clone().lerp(q, i/7).multiplyScalar(2.5*unit/most), tip = a.clone().lerp(b, i/7);
+                    return v.length() < 0.15*unit ? [] : this._arrow(tip.sub(v), v, 0.6*unit, role);
+                });
             }
             case "couple": {
                 const v = spot(mark.vector), size = v.length();

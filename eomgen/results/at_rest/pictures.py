@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
@@ -20,7 +20,15 @@ from eomgen.mechanics.statics import (
     StaticReactions,
 )
 from eomgen.model import Model
-from eomgen.proof import ReportedPush
+from eomgen.proof import (
+    Check,
+    DrawnPanel,
+    ReportedPush,
+    diagrams_drawn,
+    space_sections_drawn,
+    state_of,
+    structure_drawn,
+)
 from eomgen.results.at_rest.section_steps import Sections, sections_in_space
 from eomgen.results.at_rest.structure import StaticScene, draw_structure, label_of
 from eomgen.scene import pushes_reported
@@ -69,6 +77,17 @@ def statics_picture(found: StaticReactions, sections: Sections, influence: Influ
             figure.text(0.99, 0.99, words, fontsize=9, ha="right", va="top", color="#505050")
 
     return Picture((width, sum(heights) + (ROOM if spans else 0.0)), fill, model.name)
+
+
+def picture_checks(
+    found: StaticReactions, sections: Sections, influence: InfluenceLine | None, panels: Sequence[DrawnPanel]
+) -> Iterator[Check]:
+    """Checks of the picture: its diagrams and its influence line by their panels, the arrows by their strokes."""
+    yield from diagrams_drawn(found, sections.found, influence, panels)
+    model = found.system.scope.model
+    if model.space == "space" and not missing_values(model):
+        yield from space_sections_drawn(found, state_of(found), sections_in_space(found.balance), panels)
+    yield from structure_drawn(pushes_on(found))
 
 
 def pushes_on(found: StaticReactions) -> Iterable[ReportedPush]:

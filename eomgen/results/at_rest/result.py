@@ -59,10 +59,6 @@ from eomgen.proof import (
     ReportedWork,
     certify_equilibria,
     certify_structure,
-    diagrams_drawn,
-    space_sections_drawn,
-    state_of,
-    structure_drawn,
 )
 from eomgen.resources import doing
 from eomgen.results.at_rest.section_steps import (
@@ -72,7 +68,6 @@ from eomgen.results.at_rest.section_steps import (
     reported_sections,
     section_payload,
     section_steps,
-    sections_in_space,
     sections_of,
 )
 from eomgen.results.at_rest.steps import contacts_step, reported_work, statics_derivation, sum_name
@@ -177,15 +172,9 @@ class Statics(Result):
 
     def drawn_checks(self, panels: Sequence[DrawnPanel]) -> Iterable[Check]:
         """N, V, M and the influence line as they are drawn, from the other end and by unit loads; the arrows."""
-        from eomgen.results.at_rest.pictures import missing_values, pushes_on
+        from eomgen.results.at_rest.pictures import picture_checks
 
-        if not panels:
-            return
-        yield from diagrams_drawn(self.found, self.sections.found, self.influence, panels)
-        if self.model.space == "space" and not missing_values(self.model):
-            beams = sections_in_space(self.found.balance)
-            yield from space_sections_drawn(self.found, state_of(self.found), beams, panels)
-        yield from structure_drawn(pushes_on(self.found))
+        return picture_checks(self.found, self.sections, self.influence, panels) if panels else ()
 
     @cached_property
     def derivation(self) -> Document:

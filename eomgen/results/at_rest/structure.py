@@ -138,13 +138,13 @@ class StaticScene:
     def _reactions(self) -> Iterator[ActingArrow]:
         """The determinate reactions of the ground."""
         motion = self.statics.system.motion
-        axes = Axes(motion)
+        axes, named = Axes(motion), self._named_alone()
         for j, component in enumerate(self.statics.structure.components):
             if len(component.effects) != 1 or not self.statics.balance.solution.determined(j):
                 continue
             (effect,) = component.effects
             link = motion.links[effect.link]
-            name, sense = self._named_alone.get(j, (component.name, 1))
+            name, sense = named.get(j, (component.name, 1))
             reaction = self.statics.by_name.get(name)
             value = (
                 sense * self.statics.balance.value(j) if reaction is None or reaction.value is None else reaction.value
@@ -158,7 +158,6 @@ class StaticScene:
                 kept = vector if turns or not axes.plane else vector[:2]
                 yield ActingArrow(name, "reaction", at, number * kept, words, tex, turns)
 
-    @cached_property
     def _named_alone(self) -> dict[int, tuple[str, int]]:
         """(name, sense) of the reaction that is one component alone, by the component's number."""
         found = {}
@@ -183,7 +182,7 @@ class StaticScene:
     def _drawn(self) -> list[DrawnArrow]:
         """The arrows; of a reaction that is zero the name alone."""
         largest = max((each.size for each in self.acting if not each.turns), default=0.0) or 1.0
-        reach = LONGEST * self.bare.extent
+        reach, lines = LONGEST * self.bare.extent, self.bare.lines(MET)
         drawn: list[DrawnArrow] = []
         for each in sorted(self.acting, key=lambda each: each.turns):
             zero = each.size <= tolerances.COMPUTED * (self.largest if each.turns else largest)
@@ -192,7 +191,7 @@ class StaticScene:
             length = 0.0 if zero else 1.0 if each.turns else never_short(each.size, largest, SHORTEST)
             vector = each.vector * (length / each.size if each.size else 0.0)
             at, way = self.bare.page(each.at), reach * self.bare.page(vector)
-            outward = each.of.startswith("tension(") or (not each.turns and is_freer_outward(self.lines, at, way))
+            outward = each.of.startswith("tension(") or (not each.turns and is_freer_outward(lines, at, way))
             at = each.at
             if each.turns and not self.bare.plane:
                 at = at + self._beside(at, vector, drawn)
@@ -208,11 +207,6 @@ class StaticScene:
             if taken @ couple > (1 - tolerances.SAME_ARROW) * sizes > 0:
                 return reach * taken
         return np.zeros(3)
-
-    @cached_property
-    def lines(self) -> list[np.ndarray]:
-        """Lines of bodies and of members of trusses on the page."""
-        return self.bare.lines(MET)
 
     # -- places --------------------------------------------------------------------------------------------
 
@@ -240,12 +234,12 @@ class StaticScene:
 
     # -- words ---------------------------------------------------------------------------------------------
 
-    @cached_property
+    @property
     def scale(self) -> Scale:
         """Scale of all forces and couples, of the loads and the reactions."""
         return scale_of(self._sizes)
 
-    @cached_property
+    @property
     def largest(self) -> float:
         """Size of the largest load and reaction."""
         return max(map(abs, self._sizes), default=0.0)
@@ -292,7 +286,7 @@ class StaticScene:
 
     # -- members of trusses --------------------------------------------------------------------------------
 
-    @cached_property
+    @property
     def members(self) -> list[tuple[str, tuple[str, str], Scalar]]:
         """(name, its nodes, its force) of the members of trusses whose forces are determinate."""
         found = []
