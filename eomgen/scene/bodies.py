@@ -155,15 +155,27 @@ def gimbal_of(system: System, link: BodyLink) -> tuple[str, Vector] | None:
         return None
     mass, axis = system.scope.mass_properties(link.name), link.S[0][0]
     hung = [other for other in motion.links if other.parent == motion.index[link.name]]
-    if not is_zero(mass.m) or len(hung) > 1 or len(places_of_body(system, link)) > 1:
+    if len(hung) > 1 or len(places_of_body(system, link)) > 1 or not (is_zero(mass.m) or _spins(link, mass)):
         return None
     if not hung:
         return None if all(is_zero(x) for row in mass.I for x in row) else ("rotor", axis)
+    if not is_zero(mass.m):
+        return None
     inner = gimbal_of(system, hung[0])
     across = axis.cross(hung[0].before.R @ hung[0].S[0][0]) if inner else Vector.ZERO
     if inner is None or hung[0].before.p != link.point or all(map(is_zero, across)):
         return None
     return "ring" if inner[0] == "rotor" else "outer_ring", across
+
+
+def _spins(link: BodyLink, mass: MassProperties) -> bool:
+    """True if a body that turns on another one has its centre there and is round about the axis: a wheel."""
+    I, axis = mass.I, link.S[0][0]
+    along = [k for k in range(3) if not is_zero(axis[k])]
+    if link.parent == GROUND or len(along) != 1 or not all(map(is_zero, mass.com - link.point)):
+        return False
+    i, j = (k for k in range(3) if k not in along)
+    return is_zero(I[i][i] - I[j][j]) and all(is_zero(I[a][b]) for a in range(3) for b in range(a))
 
 
 def shaft_of(system: System, link: BodyLink) -> Vector | None:
@@ -188,7 +200,9 @@ def _plate(system: System, places: list[Vector]) -> list[Form]:
     """A line through places; of a moving body with places on more than one line the plate between them."""
     if len(places) < 2:
         return []
-    if not system.symbols.q or len(places) < 3 or any(system.motion.moves(place) for place in places):
+    loose = not system.scope.model.constraints and len(system.motion.links) == 1  # a body at an instant, by itself
+    still = not system.symbols.q and not loose
+    if still or len(places) < 3 or any(system.motion.moves(place) for place in places):
         return [LineForm(tuple(places))]
     numbers = [tuple(map(float, evaluate(place[:2], parameters_as_drawn(system), FLOAT))) for place in places]
     corners = hull(numbers)
@@ -257,7 +271,9 @@ def without_veils(marks: Sequence[Mark], *, alone: bool) -> list[Mark]:
 
     Moments that a model declares say little of its size: ellipsoids would hide how the bodies are connected.
     """
-    rims = {mark.of for mark in marks if mark.role == "rim" or (mark.role == "body" and mark.form.kind == "arc")}
+    rims = {
+        mark.of for mark in marks if mark.role == "rim" or (mark.role == "body" and mark.form.kind in ("arc", "wheel"))
+    }
     marks = [mark for mark in marks if not (is_a_rotor(mark) and mark.of in rims)]
     shown = {mark.of for mark in marks if mark.role == "body" and not (alone and isinstance(mark.form, RodForm))}
     return [mark for mark in marks if mark.role != "inertia" or mark.of not in shown]

@@ -116,10 +116,12 @@ def name_marks(system: System) -> Iterator[Mark]:
 
 
 def _middle(system: System, link: BodyLink) -> Vector:
-    """Place of a body's name: its mass centre, else half-way along its middle piece."""
-    if (center := system.motion.points[link.name].get("center")) is not None:
+    """Place of a body's name: its mass centre, else half-way along its middle piece; so of rods in space too, which
+    may leave their mass centre aside."""
+    part, places = system.scope.model.bodies[link.name], places_of_body(system, link) or [Vector.ZERO]
+    rods = system.scope.model.space == "space" and part.shape is None and part.parts is None and len(places) > 1
+    if (center := system.motion.points[link.name].get("center")) is not None and not rods:
         return center
-    places = places_of_body(system, link) or [Vector.ZERO]
     half = len(places) // 2
     return Fraction(1, 2) * (places[max(half - 1, 0)] + places[min(half, len(places) - 1)])
 

@@ -30,6 +30,7 @@ BARREL, MOST_BARREL = 0.55, 0.9  # of the longest way, and of each, that the cyl
 SMALL = 0.6  # heads of a line load, of those of a force
 ROUND = 73  # points of a circle
 LONGEST = 1.5  # of the extent, a length that is drawn
+NARROW = 1.5  # units: a dimension line that is not longer has no room for its heads
 LEAST = 0.03  # of an angle that is drawn [rad]
 
 
@@ -272,6 +273,7 @@ def _dimension(form: forms.DimensionForm, mark: Mark, numbers: SceneNumbers, siz
     a, b = numbers.spot(form.a, mark), numbers.spot(form.b, mark)
     if np.nanmax(np.linalg.norm(b - a, axis=1), initial=0.0) > LONGEST * sizes.extent:
         return [], []  # of what the picture does not show as a whole
+    a = a + np.where(np.linalg.norm(b - a, axis=1, keepdims=True) > NARROW * sizes.unit, 0.0, np.nan)
     x = _unit(b - a)
     side = np.column_stack([x[:, 1], -x[:, 0]])
     middle = 0.5 * (sizes.low + sizes.high)
@@ -282,9 +284,7 @@ def _dimension(form: forms.DimensionForm, mark: Mark, numbers: SceneNumbers, siz
     over = 0.5 * sizes.unit * side
     lines = _broken(np.stack([a + over, b + over], axis=1), np.stack([c + over, d + over], axis=1))
     found = [_stroke(lines, mark, fine=True), *_arrow_strokes(d, c, mark, sizes), *_arrow_strokes(c, d, mark, sizes)]
-    length = np.linalg.norm(b - a, axis=1, keepdims=True)
-    seen = np.where(length > 1.5 * sizes.unit, 0.0, np.nan)
-    return found, [Letter(form.text, 0.5 * (c + d) + 0.2 * over + seen, mark.role, mark.of)]
+    return found, [Letter(form.text, 0.5 * (c + d) + 0.2 * over, mark.role, mark.of)]
 
 
 def _angle(form: forms.AngleForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:

@@ -365,7 +365,7 @@ def _field(form: forms.FieldForm, mark: Mark, numbers: SceneNumbers, sizes: Pict
     v = 4.5 * sizes.unit * _unit(numbers.way(form.vector, mark))
     corner = np.where(sizes.up < -FAR, sizes.low, np.where(sizes.up > FAR, sizes.high, [sizes.low[0], *sizes.high[1:]]))
     aside = np.eye(3)[0 if abs(sizes.up[0]) < FAR else 1]
-    begin = np.broadcast_to(corner + sizes.unit * (2 * sizes.up - BESIDE * aside), v.shape)
+    begin = np.broadcast_to(corner + sizes.unit * (2 * sizes.up - 2 * BESIDE * aside), v.shape)
     return _arrow_strokes(begin, begin + v, mark, sizes), [Letter(form.text, begin + 0.5 * v, mark.role, mark.of)]
 
 

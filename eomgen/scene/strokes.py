@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -33,6 +34,9 @@ SIDES_OF_NAMES = (
     (0.6, -0.6, -0.7),
     (-0.6, -0.6, -0.7),
 )  # the first, the second, ...
+CLEAR_WAYS = ((0, 0), (3, 0), (6, 0), (9, 0), (0, 6), (0, -6), (6, 6), (6, -6), (12, 0), (16, 0))
+"""Ways by which the arrow of the weight is moved out of the way, the first first [symbol units]."""
+MOST_DOTS = 400  # along one line
 QUANTILE = 0.98  # of all arrows of a kind are no longer than that
 FORCES = ("force", "reaction")
 """Roles of forces, drawn to one scale."""
@@ -229,9 +233,58 @@ def drawn_with(
     letters: list[Letter] = []
     for mark in marks:
         drawn, named = table[type(mark.form)](mark.form, mark, numbers, sizes)
+        if mark.form.kind == "field":
+            way = _clear_way(drawn, strokes_of(table, [m for m in marks if m is not mark], numbers, sizes), sizes)
+            drawn = [replace(stroke, path=stroke.path + way) for stroke in drawn]
+            named = [replace(letter, at=letter.at + way) for letter in named]
         strokes += drawn
         letters += named
-    return Drawing(tuple(strokes), tuple(_apart(letters, strokes, sizes)), sizes)
+    return Drawing(tuple(strokes), tuple(_apart(_once(letters, sizes), strokes, sizes)), sizes)
+
+
+def strokes_of(table: DrawerTable, marks: Iterable[Mark], numbers: SceneNumbers, sizes: PictureSizes) -> list[Stroke]:
+    """The strokes of some marks."""
+    return [stroke for m in marks for stroke in table[type(m.form)](m.form, m, numbers, sizes)[0]]
+
+
+def _clear_way(drawn: Sequence[Stroke], others: Iterable[Stroke], sizes: PictureSizes) -> np.ndarray:
+    """The way by which an arrow in the corner of a plane picture is moved so that it lies over nothing at the start."""
+    d = len(sizes.low)
+    places = [stroke.path[0].reshape(-1, d) for stroke in drawn]
+    if d == 3 or not places:
+        return np.zeros(d)
+    box = np.concatenate(places)
+    low, high = np.nanmin(box, axis=0) - sizes.unit, np.nanmax(box, axis=0) + sizes.unit
+    dots = np.concatenate([np.zeros((0, 2)), *(_dots(stroke.path[0], sizes.unit) for stroke in others)])
+    covered = []
+    for x, y in CLEAR_WAYS:
+        way = sizes.unit * np.array([x, y])
+        inside = np.all((dots > low + way) & (dots < high + way), axis=1)
+        covered.append((int(np.count_nonzero(inside)), len(covered), way))
+        if not covered[-1][0]:
+            break
+    return min(covered, key=lambda each: each[:2])[2]
+
+
+def _dots(path: np.ndarray, step: float) -> np.ndarray:
+    """Places along a path k x 2, no farther apart than a step."""
+    found = [path[np.isfinite(path).all(axis=1)]]
+    for a, b in pairwise(path):
+        length = float(np.linalg.norm(b - a))
+        if math.isfinite(length) and length > step > 0:
+            found.append(a + np.linspace(0, 1, min(int(length / step), MOST_DOTS) + 2)[:, None] * (b - a))
+    return np.concatenate(found)
+
+
+def _once(letters: Sequence[Letter], sizes: PictureSizes) -> list[Letter]:
+    """The letters but for points that are called as the body there is."""
+    bodies = [letter for letter in letters if letter.role == "label"]
+
+    def is_said(letter: Letter) -> bool:
+        there = (x for x in bodies if x.text == letter.text)
+        return letter.role == "point" and any(np.linalg.norm(x.at[0] - letter.at[0]) < sizes.unit for x in there)
+
+    return [letter for letter in letters if not is_said(letter)]
 
 
 def _apart(letters: Sequence[Letter], strokes: Sequence[Stroke], sizes: PictureSizes) -> Iterator[Letter]:
