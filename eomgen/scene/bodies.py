@@ -119,8 +119,10 @@ def skeleton(system: System, link: BodyLink, frame: int) -> list[Mark]:
     places = places_of_body(system, link)
     if system.scope.model.space == "plane":
         wedge = wedge_of(system, link)
-        return [Mark(form, frame, "body", link.name) for form in ([wedge] if wedge else _plate(system, places))]
-    pairs = pairwise(line_of(system, link)) if _is_bent(system, link) else ((places[0], place) for place in places[1:])
+        forms = [wedge] if wedge else _plate(system, line_of(system, link))
+        return [Mark(form, frame, "body", link.name) for form in forms]
+    line, bent = line_of(system, link), not system.scope.model.coordinates  # of a structure: from point to point
+    pairs = pairwise(line) if bent or line != places else ((places[0], place) for place in places[1:])
     rods = [Mark(RodForm(a, b), frame, "body", link.name) for a, b in pairs]
     if gimbal := gimbal_of(system, link):
         symbol, axis = gimbal
@@ -133,16 +135,15 @@ def skeleton(system: System, link: BodyLink, frame: int) -> list[Mark]:
     return [*rods, *inertia_mark(system.scope.mass_properties(link.name), frame, link.name)]
 
 
-def _is_bent(system: System, link: BodyLink) -> bool:
-    """True if a body in space goes from point to point: it says so by its line, or is part of a structure."""
-    part = system.scope.model.bodies[link.name]
-    return bool(part.line) or not system.symbols.q
-
-
 def line_of(system: System, link: BodyLink) -> list[Vector]:
-    """The points along a body: those of its line, else all its places in order."""
-    part, own = system.scope.model.bodies[link.name], system.motion.points[link.name]
-    return [own[name.rpartition(".")[2]] for name in part.line or ()] or places_of_body(system, link)
+    """All places of a body, in the order of its line where that goes through all of them."""
+    part, own, places = (
+        system.scope.model.bodies[link.name],
+        system.motion.points[link.name],
+        places_of_body(system, link),
+    )
+    line = [own[name.rpartition(".")[2]] for name in part.line or ()]
+    return line if set(places) <= set(line) else places
 
 
 def gimbal_of(system: System, link: BodyLink) -> tuple[str, Vector] | None:
@@ -198,10 +199,11 @@ def _turns(link: BodyLink) -> bool:
 
 def _plate(system: System, places: list[Vector]) -> list[Form]:
     """A line through places; of a moving body with places on more than one line the plate between them."""
+    model = system.scope.model
     if len(places) < 2:
         return []
-    loose = not system.scope.model.constraints and len(system.motion.links) == 1  # a body at an instant, by itself
-    still = not system.symbols.q and not loose
+    loose = not model.constraints and len(system.motion.links) == 1  # a body at an instant, by itself
+    still = not model.coordinates and not loose
     if still or len(places) < 3 or any(system.motion.moves(place) for place in places):
         return [LineForm(tuple(places))]
     numbers = [tuple(map(float, evaluate(place[:2], parameters_as_drawn(system), FLOAT))) for place in places]
