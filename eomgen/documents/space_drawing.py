@@ -485,10 +485,10 @@ class Sketch:
         drawer = plane_drawing if self.plane else space_drawing
         return drawer(self.frame, dimensions=self.dimensions, arrow=self.longest)
 
-    def lines(self, roles: Iterable[str]) -> list[np.ndarray]:
-        """Lines of the page that its strokes of some roles are."""
-        strokes = [s.path[0] for s in self.drawing.strokes if s.role in roles and not s.faces]
-        return [self.page(path) for path in strokes]
+    def lines(self, roles: Iterable[str], of: str = "") -> list[np.ndarray]:
+        """Lines of the page that its strokes of some roles are; `of`: of one body alone."""
+        shown = [s for s in self.drawing.strokes if s.role in roles and of in ("", s.of) and not s.faces]
+        return [self.page(stroke.path[0]) for stroke in shown]
 
     @property
     def extent(self) -> float:

@@ -88,7 +88,7 @@ def _size(system: System, values: Mapping[Node, float], mode: Mode, here: Sketch
     moved = [
         abs(b - a).max()
         for link in system.motion.links
-        for a, b in zip(here.lines(link), there.lines(link), strict=True)
+        for a, b in zip(here.lines(BODIES, link.name), there.lines(BODIES, link.name), strict=True)
     ]
     largest = max(moved, default=0.0)
     return PART * here.extent * tolerances.WIDE_STEP / largest if largest > 0 else 0.0
