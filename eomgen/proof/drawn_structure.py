@@ -153,7 +153,9 @@ class _Beam:
     def _actions(self) -> list[tuple[float, np.ndarray, np.ndarray, np.ndarray]]:
         """(x, place, force, couple) of all that acts at places."""
         axis, loads = self.sections.axis, self._loads
-        return [(self._x(axis.distance(p)), *map(self.numbers, (p, f, c))) for p, f, c in loads.actions]
+        return [
+            (self._x(axis.distance(p)), self.numbers(p), self.numbers(f), self.numbers(c)) for p, f, c in loads.actions
+        ]
 
     @cached_property
     def _loads(self) -> MemberLoads:

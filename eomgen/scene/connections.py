@@ -277,14 +277,15 @@ def _fastened(system: System, strands: Sequence[Strand], of: str) -> Iterator[Ma
 def _belt_of(system: System, scene: SystemScene, wheels: tuple[str, str, Expression], of: str) -> list[Mark]:
     """The belt that two round wheels need which turn in one sense, apart, as their radii have it; in the plane."""
     *bodies, ratio = wheels
-    rims = [next(iter(_arcs(system, body)), None) for body in bodies]
-    if system.scope.model.space == "space" or any(r is None for r in rims):
+    rims = [r for body in bodies for r in (next(iter(_arcs(system, body)), None),) if r is not None]
+    if system.scope.model.space == "space" or len(rims) < 2:
         return []
     centers = [scene.place(f"{body}.origin") for body in bodies]
     reach = scene.position(centers[1]) - scene.position(centers[0])
-    sizes = [scene.value_at_start(x) for x in (reach @ reach, *rims)]
-    apart = all(x is not None for x in sizes) and sizes[0] > (sizes[1] + sizes[2]) ** 2
-    if not apart or not is_zero(scene.value(ratio) * rims[0] - rims[1]):
+    square, r, R = (scene.value_at_start(x) for x in (reach @ reach, *rims))
+    if square is None or r is None or R is None or square <= (r + R) ** 2:
+        return []
+    if not is_zero(scene.value(ratio) * rims[0] - rims[1]):
         return []
     first, second = (Stop(scene, place, r) for place, r in zip(centers, rims, strict=True))
     there, back = common_tangent(scene, first, second), common_tangent(scene, second, first)

@@ -256,7 +256,7 @@ def _clear_way(drawn: Sequence[Stroke], others: Iterable[Stroke], sizes: Picture
     box = np.concatenate(places)
     low, high = np.nanmin(box, axis=0) - sizes.unit, np.nanmax(box, axis=0) + sizes.unit
     dots = np.concatenate([np.zeros((0, 2)), *(_dots(stroke.path[0], sizes.unit) for stroke in others)])
-    covered = []
+    covered: list[tuple[int, int, np.ndarray]] = []
     for x, y in CLEAR_WAYS:
         way = sizes.unit * np.array([x, y])
         inside = np.all((dots > low + way) & (dots < high + way), axis=1)

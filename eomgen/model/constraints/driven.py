@@ -35,7 +35,8 @@ class Gear(Constraint):
     ratio: Pure
 
     def wheels(self) -> tuple[str, str, Any]:
-        return (*self.bodies, self.ratio)
+        first, second = self.bodies
+        return first, second, self.ratio
 
     def stays(self, component: str) -> bool:
         return True

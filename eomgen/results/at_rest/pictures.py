@@ -107,9 +107,12 @@ def _in_a_grid(
     grid = figure.add_gridspec(len(heights), max(1, len(bodies)), height_ratios=heights)
     draw_structure(figure.add_subplot(grid[0, :]), scene)
     for column, forces in enumerate(bodies):
-        count, drawn = (len(KINDS), diagram_panels) if isinstance(forces, SectionForces) else (len(IN_SPACE), in_space)
+        count = len(KINDS) if isinstance(forces, SectionForces) else len(IN_SPACE)
         panels = [figure.add_subplot(grid[1 + k, column]) for k in range(count)]
-        drawn(panels, forces, scene.bare.values, scene.scale, scene.written)
+        if isinstance(forces, SectionForces):
+            diagram_panels(panels, forces, scene.bare.values, scene.scale, scene.written)
+        else:
+            in_space(panels, forces, scene.bare.values, scene.scale, scene.written)
     if line is not None:
         influence_panel(figure.add_subplot(grid[-1, :]), line, scene.bare.values)
 

@@ -190,7 +190,7 @@ class StaticScene:
                 continue
             length = 0.0 if zero else 1.0 if each.turns else never_short(each.size, largest, SHORTEST)
             vector = each.vector * (length / each.size if each.size else 0.0)
-            at, way = self.bare.page(each.at), reach * self.bare.page(vector)
+            at, way = self.bare.page(each.at).tolist(), (reach * self.bare.page(vector)).tolist()
             outward = each.of.startswith("tension(") or (not each.turns and is_freer_outward(lines, at, way))
             at = each.at
             if each.turns and not self.bare.plane:
@@ -205,7 +205,8 @@ class StaticScene:
             taken = np.array(force.vector) * (1 if force.outward else -1)
             sizes = float(np.linalg.norm(taken) * np.linalg.norm(couple))
             if taken @ couple > (1 - tolerances.SAME_ARROW) * sizes > 0:
-                return reach * taken
+                beyond: np.ndarray = reach * taken
+                return beyond
         return np.zeros(3)
 
     # -- places --------------------------------------------------------------------------------------------
@@ -215,7 +216,8 @@ class StaticScene:
         axes = Axes(self.statics.system.motion)
         link = axes.motion.links[effect.link]
         center = self.bare.spot(link.pose.point(axes.masses[effect.link].com))
-        return center + self.bare.spot(effect.arm if axes.plane else link.pose.R @ effect.arm)
+        found: np.ndarray = center + self.bare.spot(effect.arm if axes.plane else link.pose.R @ effect.arm)
+        return found
 
     def _seat(self, couple: Component) -> np.ndarray:
         """Place of a drawn couple: at the forces of its constraint or joint, else in the middle of the body."""
