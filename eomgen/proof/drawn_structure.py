@@ -79,7 +79,7 @@ def _wrench(push: ReportedPush) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _of_a_line(push: ReportedPush, first: float, last: float) -> tuple[np.ndarray, np.ndarray]:
-    """Of a load per length that is linear between two places: each of its two triangles acts at its third."""
+    """Wrench and sizes of a load per length, linear between two places: each of its two triangles acts at its third."""
     assert push.end is not None
     (end, way), length = push.end, float(np.linalg.norm(push.end[0] - push.at))
     total, sizes = np.zeros(6), np.zeros(2)
