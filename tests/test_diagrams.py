@@ -257,3 +257,10 @@ def test_a_diagram_in_space_that_shows_another_thing_is_seen(bracket):
     for change in changes:
         shown = [change(panel) if panel.y.startswith("M_y") else panel for panel in panels]
         assert "fails" in {check.status for check in found.drawn_checks(shown)}
+
+
+def test_the_report_of_a_structure_in_space_has_its_picture():
+    """Below the model as it stands: loads, reactions and the diagrams of its beams."""
+    found = eomgen.report(eomgen.loads(BRACKET), certify=False, without=["downloads"])
+    captions = {section.key: [each.caption for each in section.drawings] for section in found.sections}
+    assert len(captions["figure"]) == 1 and captions["statics"][0].startswith("Loads and reactions")

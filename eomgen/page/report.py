@@ -525,8 +525,8 @@ def _steps(key: str) -> Callable[[Subject], ReportSection]:
 
 
 def _pictures(subject: Subject, key: str) -> tuple[ReportFigure, ...]:
-    """The picture of a result of the plane; none if it has none, as where parameters have no values."""
-    if key == "derivation" or subject.model.space == "space":
+    """The picture of a result, in space of a structure alone; none where it has none: parameters without values."""
+    if key == "derivation" or (subject.model.space == "space" and key != "statics"):
         return ()
     try:
         picture = subject.found[key].picture
