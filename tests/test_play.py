@@ -295,3 +295,47 @@ def test_a_page_in_the_plane_goes_with_what_goes_far():
     assert seen.console == ()
     for left, right, tall in seen.found:
         assert 0 < left < right < 1 and tall > 0.2
+
+
+def test_a_belt_lies_on_the_far_sides_of_its_pulleys_and_a_cylinder_keeps_its_length():
+    """The box of all strings is that of both rims, from -r to a + R; the barrel is as long at both ends of a motion."""
+    text = """eomgen = 1
+space = "plane"
+coordinates = { phi = { start = 0, speed = 1 }, s = { start = 1, speed = 0.4 } }
+[bodies.small]
+shape = { kind = "disc", mass = 1, radius = 0.1 }
+joint = { kind = "revolute", angle = "phi", torque = 0.1 }
+[bodies.large]
+shape = { kind = "disc", mass = 4, radius = 0.3 }
+joint = { kind = "revolute", at = [1, 0], angle = "phi/3" }
+[bodies.arm]
+mass = 1
+inertia = 0.1
+center = [0.2, 0]
+joint = { kind = "revolute", at = [0, 1], angle = "0.2*phi" }
+[bodies.rod]
+shape = { kind = "particle", mass = 1 }
+joint = { kind = "prismatic", on = "arm", axis = [1, 0], displacement = "s", force = 0.1 }
+[constraints.belt]
+kind = "gear"
+bodies = ["small", "large"]
+ratio = 3
+"""
+    run = eomgen.simulate(eomgen.loads(text), time=1)
+    script = """
+        const svg = document.querySelector("svg.stage"), box = css => {
+            const all = [...svg.querySelectorAll(css)].map(g => g.getBoundingClientRect());
+            return [Math.min(...all.map(b => b.left)), Math.max(...all.map(b => b.right))];
+        };
+        const ends = d => d.match(/[-\\d.]+ [-\\d.]+/g).map(p => p.split(" ").map(Number));
+        return [0, 1].map(t => {
+            eomgen.seek(t);
+            const d = svg.querySelector("g.mark.cylinder path").getAttribute("d").split("M")[2], [a, b] = ends(d);
+            return [box("g.mark.string"), box("g.mark.body.arc"), Math.hypot(a[0] - b[0], a[1] - b[1])];
+        });
+    """
+    seen = visited(player(run, Showing()), script)
+    assert seen.console == ()
+    (strings, rims, first), (_, _, last) = seen.found
+    assert strings == pytest.approx(rims, abs=2)
+    assert first == pytest.approx(last, rel=0.02)

@@ -280,10 +280,13 @@ const spot = ([x, y]) => `${+x.toFixed(2)} ${+y.toFixed(2)}`;
 const outline = points => points.map((p, i) => `${i ? "L" : "M"}${spot(p)}`).join("");
 const circle = ([x, y], r) => `M${spot([x - r, y])}A${r} ${r} 0 1 0 ${spot([x + r, y])}A${r} ${r} 0 1 0 ${spot([x - r, y])}Z`;
 
+/** The end of an arc that runs counter-clockwise from its start. */
+export const onwards = (from, to) => to < from ? to + 2*Math.PI*Math.ceil((from - to)/(2*Math.PI)) : to;
+
 function arc(mark, value, k) {
     const a = Math.abs(k*value(mark.radius)), b = Math.abs(k*value(mark.radius_y)), [x, y] = [k*value(mark.at[0]), -k*value(mark.at[1])];
     if (mark.start === null) return `M${x - a} ${y}A${a} ${b} 0 1 0 ${x + a} ${y}A${a} ${b} 0 1 0 ${x - a} ${y}Z`;
-    const from = value(mark.start), to = value(mark.end), place = w => `${x + a*Math.cos(w)} ${y - b*Math.sin(w)}`;
+    const from = value(mark.start), to = onwards(from, value(mark.end)), place = w => `${x + a*Math.cos(w)} ${y - b*Math.sin(w)}`;
     const middle = (from + to)/2, sweep = to > from ? 0 : 1;
     const curve = `M${place(from)}A${a} ${b} 0 0 ${sweep} ${place(middle)}A${a} ${b} 0 0 ${sweep} ${place(to)}`;
     return mark.close === "center" ? `${curve}L${x} ${y}Z` : mark.close === "chord" ? `${curve}Z` : curve;
@@ -309,8 +312,8 @@ function damper(a, b, unit, side) {
 
 function cylinder(a, b, unit, mark, k) {
     const [n, at] = along(a, b, mark.side, unit), [w, r] = [0.6*unit, 0.2*unit], d = barrel(mark, n/k)*n, c = 0.06*d;
-    const barrel = outline([at(c, w), at(d, w), at(d, -w), at(c, -w), at(c, w)]);
-    return outline([at(0, 0), at(c, 0)]) + barrel + outline([at(0.85*d, w), at(0.85*d, -w)]) + outline([at(d, r), at(n, r), at(n, -r), at(d, -r)]);
+    const shell = outline([at(c, w), at(d, w), at(d, -w), at(c, -w), at(c, w)]);
+    return outline([at(0, 0), at(c, 0)]) + shell + outline([at(0.85*d, w), at(0.85*d, -w)]) + outline([at(d, r), at(n, r), at(n, -r), at(d, -r)]);
 }
 
 function arrow(from, to, head) {
@@ -321,7 +324,8 @@ function arrow(from, to, head) {
 function couple([x, y], turn, r) {
     if (!(Math.abs(turn) > 0)) return "M0 0";
     const s = turn > 0 ? 1 : -1, place = w => [x + r*Math.cos(w), y - s*r*Math.sin(w)], tip = place(1.5*Math.PI), q = 0.35*r;
-    return `M${spot(place(0))}A${r} ${r} 0 1 ${s > 0 ? 0 : 1} ${spot(tip)}${outline([[tip[0] + q*1.4, tip[1]], [tip[0], tip[1] - q], [tip[0], tip[1] + q]])}Z`;
+    const [there, back] = s > 0 ? [0, 1] : [1, 0];  // and back, so that nothing is inside
+    return `M${spot(place(0))}A${r} ${r} 0 1 ${there} ${spot(tip)}A${r} ${r} 0 1 ${back} ${spot(place(0))}${outline([[tip[0] + q*1.4, tip[1]], [tip[0], tip[1] - q], [tip[0], tip[1] + q]])}Z`;
 }
 
 function load(mark, value, at, unit) {

@@ -1,6 +1,6 @@
 // Scene, frame -> a picture in space, by three.js; z up. A drag turns it, the wheel or + and - bring it nearer.
 
-import { barrel, longestWays, scaleOf } from "./plane.mjs";
+import { barrel, longestWays, onwards, scaleOf } from "./plane.mjs";
 
 const UNIT = 0.028;  // a symbol's unit, of the extent of what moves
 const FLATTEST = 0.12;  // the shortest half-axis of an ellipsoid that one sees, of its longest
@@ -227,8 +227,8 @@ export class SpaceView {
             case "arc": {
                 if (mark.hole) return null;
                 const a = value(mark.radius), b = value(mark.radius_y), whole = mark.start === null;
-                const from = whole ? 0 : value(mark.start), to = whole ? 2*Math.PI : value(mark.end);
-                const curve = new three.EllipseCurve(0, 0, a, b, from, to, to < from).getPoints(48);
+                const from = whole ? 0 : value(mark.start), to = whole ? 2*Math.PI : onwards(from, value(mark.end));
+                const curve = new three.EllipseCurve(0, 0, a, b, from, to, false).getPoints(48);
                 if (mark.close === "none") return at(line(curve.map(p => new three.Vector3(p.x, p.y, 0))), spot(mark.at));
                 return at(flat(mark.close === "center" && !whole ? [new three.Vector2(0, 0), ...curve] : curve), spot(mark.at));
             }
