@@ -1,0 +1,10 @@
+right | T = \frac{m_1}{2}\dot x^2 + \frac{m_2}{2}(\dot x - r\dot\varphi)^2 + \frac{1}{4} m_2 r^2 \dot\varphi^2
+right | (3 m1 + m2) x'' = 3 F
+right | x¨ = \frac{3}{2} r \varphi¨
+right | F - m1 x'' - m2 (x'' - r phi'') = 0
+right | \frac{m_2 r^2}{2} \ddot\varphi = H r
+sign_of_relative_velocity | T = m1/2 x'^2 + m2/2 (x' + r phi')^2 + m2/4 r^2 phi'^2 | sign,opposite
+rotation_forgotten | x'' = F/(m1 + m2) | rotat,roll,inertia,phi,factor,turn
+inertia_of_thin_ring | m2 r^2 phi'' = H r | 1/2,half,factor,inertia,2,twice
+friction_sign | m1 x'' = F + H | sign,opposite,direction
+acceleration_of_plank_for_cylinder | H = m2 x'' | phi,r,centre,center,relative,factor,1/3,3,roll

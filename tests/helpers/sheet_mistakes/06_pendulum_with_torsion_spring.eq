@@ -1,0 +1,10 @@
+right | J_O = \frac{1}{3} m l^2 + \frac{1}{2} M R^2 + M l^2
+right | U = (m/2 + M) g l (1 - cos θ) + 1/2 k θ^2
+right | (2 m l^2 + 3 M R^2 + 6 M l^2) θ¨ + 6 c θ˙ + 6 k θ + 3 (m + 2 M) g l sin θ = 0
+right | \omega_0^2 = \frac{k + (m/2 + M) g l}{m l^2/3 + M R^2/2 + M l^2}
+right | (m l^2/3 + M R^2/2 + M l^2) θ¨ + c θ˙ + (k + (m/2 + M) g l) θ = 0 | - | to_first_order:yes
+steiner_of_disc_forgotten | J_O = m l^2/3 + M R^2/2 | Steiner,parallel,M*l^2,l^2*M + M,disc
+rod_about_its_centre | (m l^2/12 + M R^2/2 + M l^2) θ¨ + c θ˙ + k θ + (m/2 + M) g l sin θ = 0 | Steiner,parallel,1/3,l/2,m*l^2,centre,center
+own_inertia_of_disc_forgotten | (m l^2/3 + M l^2) θ¨ + c θ˙ + k θ + (m/2 + M) g l sin θ = 0 | R^2,disc,rotat,own inertia
+lever_of_rod_weight | (m l^2/3 + M R^2/2 + M l^2) θ¨ + c θ˙ + k θ + (m + M) g l sin θ = 0 | half,1/2,centre,center,l/2,lever,factor,twice + m,rod,weight
+sin_for_cos | E_pot = 1/2 k θ^2 - (m/2 + M) g l sin θ | sin,cos

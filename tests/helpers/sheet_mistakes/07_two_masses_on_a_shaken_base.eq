@@ -1,0 +1,10 @@
+right | m_1\ddot x_1 + c(\dot x_1 - \dot x_2) + (k_1 + k_2) x_1 - k_2 x_2 = k_1 u_0 \cos\Omega t
+right | m2 x2¨ = k2 (x1 - x2) + c (x1˙ - x2˙)
+right | V = 1/2 k1 (x1 - u)^2 + 1/2 k2 (x2 - x1)^2
+right | m1 x1'' + m2 x2'' = k1 (u - x1)
+right | \ddot x_2 + \frac{c}{m_2}(\dot x_2 - \dot x_1) + \frac{k_2}{m_2}(x_2 - x_1) = 0
+spring_forgotten | m1 x1'' = -k1 (x1 - u) + c (x2' - x1') | k2,spring2,spring
+sign_of_damper | m2 x2'' = -k2 (x2 - x1) + c (x2' - x1') | sign,opposite + c,damper,damping
+damper_to_the_ground | m2 x2'' + c x2' + k2 (x2 - x1) = 0 | x1',relative,difference,first + c,damp
+base_at_rest | m1 x1'' + c (x1' - x2') + (k1 + k2) x1 - k2 x2 = 0 | u,base,excitation,k1
+action_and_reaction | m1 x1'' = -k1 (x1 - u) - k2 (x2 - x1) + c (x2' - x1') | sign,opposite + k2,spring

@@ -1,0 +1,10 @@
+right | T = \frac{M+m}{2}\dot s^2 + \frac{m}{2} l^2 \dot\varphi^2 + m l \dot s\dot\varphi(\cos\alpha\cos\varphi - \sin\alpha\sin\varphi)
+right | l φ¨ + s¨ cos(φ + α) + g sin φ = 0
+right | S = m (g cos φ + l φ˙^2 - s¨ sin(φ + α))
+right | \frac{d}{dt}[(M + m) s' + m l φ' cos(φ + α)] = (M + m) g sin α
+right | N = (M + m) g cos(alpha) + m l (phi'' sin(phi + alpha) + phi'^2 cos(phi + alpha))
+cross_term_forgotten | T = (M + m)/2 s'^2 + m/2 l^2 phi'^2 | cross,mixed,product,s'*phi',phi'*s',coupling,relative
+centripetal_term_forgotten | (M + m) s'' + m l phi'' cos(phi + alpha) = (M + m) g sin(alpha) | phi'^2,centripetal,derivative,product,centrifugal
+angle_of_ramp_forgotten_in_cross_term | T = (M + m)/2 s'^2 + m/2 l^2 phi'^2 + m l s' phi' cos(phi) | alpha,angle
+static_normal_force | N = (M + m) g cos(alpha) | acceleration,phi'',phi'^2,inertia,static,rest
+weight_of_load_forgotten | (M + m) s'' + m l phi'' cos(phi + alpha) - m l phi'^2 sin(phi + alpha) = M g sin(alpha) | m,load,weight

@@ -1,0 +1,10 @@
+right | E_{pot} = -\frac{4 m g r}{3\pi}\cos\varphi
+right | E_kin = m r^2 φ˙^2 (3/4 - 4/(3π) cos φ)
+right | J_S = m r^2/2 - m (4r/(3π))^2
+right | T = 2 \pi \sqrt{\frac{(9\pi - 16) r}{8 g}}
+right | (9π - 16 cos φ) r φ¨ + 8 (r φ˙^2 + g) sin φ = 0
+derivative_of_product | (9π - 16 cos φ) r φ¨ + 8 g sin φ = 0 | phi'^2,derivative,product,centripetal,rate
+moment_about_wrong_point | J_S = m r^2/2 | Steiner,parallel,centre,center
+translation_forgotten | E_kin = 1/4 m r^2 φ˙^2 | transl,velocity,moves,roll,centre,center,point
+distance_to_contact | \omega_0^2 = \frac{8 g}{9 \pi r} | 16,cross,cos,distance,contact,inertia,e
+static_normal_force | N = m g | acceleration,phi,inertia,centripetal,rest

@@ -1,0 +1,10 @@
+right | L = \frac{m}{2}\left[\left(1 + \frac{r^2}{p^2}\right)\dot r^2 + \omega^2 r^2\right] - \frac{m g r^2}{2 p}
+right | (p^2 + r^2) r¨ + r r˙^2 + (g p - ω^2 p^2) r = 0
+right | M = 2 m \omega r \dot r
+right | N_q = 2 m ω r'
+right | \frac{m}{2}(1 + r^2/p^2) \dot r^2 - \frac{m}{2} \omega^2 r^2 + \frac{m g r^2}{2 p} = const
+vertical_speed_forgotten | T = m/2 (r'^2 + ω^2 r^2) | z,vertical,r^2,height,component
+centrifugal_sign | (1 + r^2/p^2) r'' + r r'^2/p^2 + ω^2 r + g r/p = 0 | sign,opposite + omega,centrifugal
+partial_derivative_forgotten | (1 + r^2/p^2) r'' + 2 r r'^2/p^2 - ω^2 r + g r/p = 0 | factor,2,twice,half,derivative + r'^2,dT
+coriolis_factor | M_d = m ω r r' | factor,2,twice,half,Coriolis
+energy_for_jacobi | m/2 (1 + r^2/p^2) r'^2 + m/2 ω^2 r^2 + m g r^2/(2 p) = const | sign,drive,work,not conserved,omega,centrifugal,power

@@ -1,0 +1,10 @@
+right | N_1 = m g - P \sin\beta
+right | m x'' = P cos β - μ (m g - P sin β)
+right | M \ddot X + d \dot X + k X = \mu N_1
+right | m x'' + M X'' + d X' + k X = P cos β
+right | x¨ = 3.15 m/s^2
+pull_lifts_forgotten | m x'' = P cos β - μ m g | P,sin,normal,lift
+sign_of_friction | M X'' = -μ N_1 - d X' - k X | sign,opposite + friction,mu,N_1
+weight_of_upper_forgotten | N_2 = M g | m,upper,weight,P
+components_swapped | m x'' = P sin β - μ (m g - P cos β) | sin,cos
+reaction_of_friction_forgotten | M X'' + d X' + k X = 0 | mu,friction,upper

@@ -1,0 +1,10 @@
+right | S_1 = m_K (g + s¨)
+right | \left[J_S + i^2 J_M + (m_K + m_G) R^2\right] \ddot s = i M_M R - (m_K - m_G) g R^2
+right | E_{kin} = \frac{1}{2}\left(m_K + m_G + \frac{J_S + i^2 J_M}{R^2}\right) v^2
+right | (S_1 - S_2) R = i (M_M - i J_M s''/R) - J_S s''/R
+right | s'' = 0.529 m/s^2
+ratio_not_squared | (m_K + m_G + (J_S + i J_M)/R^2) s'' = i M_M/R - (m_K - m_G) g | i^2,ratio,square,factor,gear,J_M,rotor
+counterweight_without_inertia | (m_K + (J_S + i^2 J_M)/R^2) s'' = i M_M/R - (m_K - m_G) g | m_G,counterweight,weight
+tension_is_weight | S_1 = m_K g | acceleration,s'',inertia
+sign_of_acceleration | S_2 = m_G (g + s'') | sign,opposite
+torque_not_geared | (m_K + m_G + (J_S + i^2 J_M)/R^2) s'' = M_M/R - (m_K - m_G) g | i,ratio,gear + M_M,motor,torque,factor

@@ -1,0 +1,10 @@
+right | m \dot v = F - m g \sin\alpha - c v^2
+right | N_f + N_r - m g cos α = 0
+right | N_r (a + b) = m g a cos α + (m x'' + c x'^2 + m g sin α) h
+right | N_f = \frac{m g b\cos\alpha - F h}{a + b}
+right | N_r = 6.27 kN
+inertia_force_forgotten | N_r (a + b) = m g a cos α + (c x'^2 + m g sin α) h | x'',inertia,acceleration,Alembert
+levers_swapped | N_f (a + b) = m g a cos α - F h | lever,arm,a,b,swapped
+component_of_weight_forgotten | N_f + N_r = m g | cos,component,slope,alpha
+drag_forgotten | m x'' = F - m g sin α | c,drag
+sign_of_load_transfer | N_f = (m g b cos α + F h)/(a + b) | sign,opposite

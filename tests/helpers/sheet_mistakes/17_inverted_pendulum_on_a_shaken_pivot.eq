@@ -1,0 +1,10 @@
+right | m l^2 \ddot\theta + c\dot\theta + k b^2\sin\theta\cos\theta - m l (g - y_0\Omega^2\cos\Omega t)\sin\theta = 0
+right | T = m/2 (y˙^2 + l^2 θ˙^2 - 2 l y˙ θ˙ sin θ)
+right | y¨ = -y_0 Ω^2 cos(Ω t)
+right | F_y = m (g + y¨ - l θ¨ sin θ - l θ˙^2 cos θ)
+right | m l^2 θ¨ + c θ˙ + (k b^2 - m g l + m l y_0 Ω^2 cos Ωt) θ = 0 | - | to_first_order:yes
+motion_of_pivot_forgotten | m l^2 θ¨ + c θ˙ + k b^2 sin θ cos θ - m g l sin θ = 0 | y'',y_0,pivot,support,drive,Omega
+lever_of_spring | m l^2 θ¨ + c θ˙ + k b^2 sin θ - m l (g - y_0 Ω^2 cos Ωt) sin θ = 0 | cos,lever + k,spring
+cross_term_forgotten | T = m/2 (y'^2 + l^2 θ'^2) | cross,mixed,product,y'*,*y',relative
+gravity_as_of_hanging | m l^2 θ¨ + c θ˙ + k b^2 sin θ cos θ + m l (g + y_0 Ω^2 cos Ωt) sin θ = 0 | sign,opposite + g,weight,gravity
+pendulum_forgotten_in_drive | F_y = m (g + y'') | theta,l,pendulum,rod

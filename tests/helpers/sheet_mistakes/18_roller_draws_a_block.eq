@@ -1,0 +1,10 @@
+right | \left(\frac32 m_1 + m_2\right)\ddot s = (m_1 + m_2) g\sin\alpha - \mu m_2 g\cos\alpha
+right | H = m1 s¨/2
+right | S = m1 g sin α - 3/2 m1 s''
+right | m_2 s'' - S - m_2 g sin α + μ N_2 = 0
+right | T = 3/4 m_1 v^2 + 1/2 m_2 v^2
+rolling_term_forgotten | (m1 + m2) s'' = (m1 + m2) g sin α - μ m2 g cos α | roll,rotat,inertia,3/2,turn
+friction_with_whole_weight | (3/2 m1 + m2) s'' = (m1 + m2) g sin α - μ (m1 + m2) g cos α | m1,cylinder,normal,roll,mu
+sign_of_rod_force | m2 s'' = m2 g sin α - μ m2 g cos α - S | sign,opposite + S,rod
+sliding_friction_for_rolling | H = μ m1 g cos α | slid,slip,roll,static,adhesion,mu
+cos_for_sin | S = m1 g cos α - 3/2 m1 s'' | sin,cos,component

@@ -1,0 +1,10 @@
+right | \tan\theta_1 = \frac{2 F}{(m_1 + 2 m_2) g} | - | at:equilibrium
+right | F l_2 cos θ_2 - m_2 g l_2/2 sin θ_2 = 0 | - | at:equilibrium
+right | \frac{l_2}{3}\ddot\theta_2 + \frac{l_1}{2}\left[\ddot\theta_1\cos(\theta_2 - \theta_1) + \dot\theta_1^2\sin(\theta_2 - \theta_1)\right] + \frac{g}{2}\sin\theta_2 = \frac{F}{m_2}\cos\theta_2
+right | E_pot = -m1 g l1/2 cos θ1 - m2 g (l1 cos θ1 + l2/2 cos θ2) - F (l1 sin θ1 + l2 sin θ2)
+right | T = 1/6 m1 l1^2 θ1˙^2 + 1/2 m2 (l1^2 θ1˙^2 + 1/3 l2^2 θ2˙^2 + l1 l2 θ1˙ θ2˙ cos(θ1 - θ2))
+lower_bar_forgotten | tan θ1 = 2 F/(m1 g) | m2,second,lower | at:equilibrium
+lever_of_weight | tan θ2 = F/(m2 g) | half,1/2,centre,center,lever,factor,2,twice | at:equilibrium
+cross_term_with_whole_length | T = 1/6 m1 l1^2 θ1˙^2 + 1/2 m2 (l1^2 θ1˙^2 + 1/3 l2^2 θ2˙^2) + m2 l1 l2 θ1˙ θ2˙ cos(θ1 - θ2) | factor,half,2,centre,center,twice + cross,theta1'*theta2',m2
+sin_for_cos_of_force | m2 l2^2/3 θ2¨ + m2 l1 l2/2 (θ1¨ cos(θ1 - θ2) - θ1˙^2 sin(θ1 - θ2)) + m2 g l2/2 sin θ2 = F l2 sin θ2 | sin,cos + F,pull
+inertia_about_the_centre | m2 l2^2/12 θ2¨ + m2 l1 l2/2 (θ1¨ cos(θ1 - θ2) - θ1˙^2 sin(θ1 - θ2)) + m2 g l2/2 sin θ2 = F l2 cos θ2 | Steiner,parallel,1/3,centre,center,m2*l2^2
