@@ -28,6 +28,7 @@ from eomgen.judge.implied import (
 )
 from eomgen.judge.reading import DERIVED, HandEquation, along_ground_axes, of_free_coordinates
 from eomgen.judge.renaming import Renaming, renamings
+from eomgen.judge.small_matrices import of_eigenvalue, of_matrix, of_small_motions
 from eomgen.judge.truth import (
     CONSTANT,
     IDENTITY,
@@ -181,6 +182,9 @@ class Judge:
             return self._of_several(equation, several, at=at, kind=kind, defined=defined)
         if (matrix := matrix_of(equation) if isinstance(equation, str) else None) is not None:
             return self._of_matrix(equation, *matrix)
+        of_small = of_small_motions(self.case, equation) if at is None and isinstance(equation, str) else None
+        if of_small is not None:
+            return of_small
         written = self.case.reading.read(equation, defined)
         known = kind or kind_of_equation(written, self.case.model)
         answered = of_output(self.case, written, at)
@@ -228,11 +232,13 @@ class Judge:
         )
 
     def _of_matrix(self, given: str, letter: str, rows: list[list[str]]) -> Verdict:
-        """The verdict on M, C or K of the small motions, entry by entry.
+        """The verdict on a matrix of the small motions, M, C and K entry by entry.
 
         Raises:
             ExpressionError: another matrix, or one of another size.
         """
+        if letter not in MATRICES and (found := of_matrix(self.case, given, letter, rows)) is not None:
+            return found
         names = [u.name.removesuffix("'") for u in self.case.system.symbols.u]
         if letter not in MATRICES or not {*names} <= self.case.model.coordinates.keys():
             raise ExpressionError(f"'{letter}' is no matrix that is judged", 0, f"one of {', '.join(MATRICES)}")
@@ -464,6 +470,8 @@ class Judge:
     def _of_other_names(self, written: HandEquation, kind: str, unknown: list[str]) -> Verdict:
         """Verdict on an equation with names that the model lacks: renamed, constants, or forces of constraints."""
         case = self.case
+        if (characteristic := of_eigenvalue(case, written, unknown)) is not None:
+            return characteristic
         near: Renaming | None = None
         for renaming in renamings(case, written, unknown):
             near = near or (renaming if renaming.near else None)

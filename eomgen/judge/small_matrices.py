@@ -1,0 +1,246 @@
+"""What `linearize` prints beside M, C and K, from somebody -> Verdict.
+
+State matrices and their entries, transfer functions, the characteristic equation and the conditions of Hurwitz, as they
+are printed; of an author also a polynomial in s or lambda that is 0 together with the characteristic one.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from contextlib import suppress
+from functools import cached_property
+from typing import Any
+
+from eomgen.errors import DerivationError, ExpressionError, MissingValues
+from eomgen.frozen import dataclass
+from eomgen.judge.case import Case
+from eomgen.judge.comparison import excess
+from eomgen.judge.decision import is_zero_everywhere
+from eomgen.judge.reading import HandEquation
+from eomgen.judge.verdict import RIGHT, WRONG, Cause, Verdict
+from eomgen.mechanics.linearization import LinearEquations, Modes, StateMatrices
+from eomgen.results import linearize
+from eomgen.symbolic.exact import Polynomial
+from eomgen.symbolic.expression import Fraction, Node, Scalar, depends_on, is_zero, over, parse, substituted
+from eomgen.symbolic.numeric import FLOAT, NoValue, evaluate, tolerances
+from eomgen.symbolic.print import readable_text, to_text
+
+LETTERS = ("A", "B", "C_y", "D_y", "D", "G", "H", "E", "F")
+ENTRY = re.compile(r"(?P<letter>[A-Z](?:_y|_\{y\})?)\s*(?:[\[(](?P<text>[^\[\]()=]+)[\])]|_\{(?P<index>.*)\})\s*$")
+DETERMINANT = re.compile(r"\\?det\b.*\bs\w*\b.*$", re.S)
+CONDITION = re.compile(r"h_\{?(\d+)\}?$")
+EIGENVALUE = ("s", "lambda", "p", "r")
+"""letters of an exponent exp(s t) that an author may have"""
+CIRCULAR = ("omega", "w")
+"""letters of a frequency, s = i omega"""
+TRIED = Fraction(3, 7)  # a value of s at which polynomials are compared
+DEFINES = "what the characteristic equation is"
+
+
+@dataclass(frozen=True)
+class SmallMatrices:
+    """The matrices of small motions, over the symbols of a case; in floats where they are not known exactly."""
+
+    case: Case
+    modes: Modes
+
+    @staticmethod
+    def of(case: Case) -> SmallMatrices | None:
+        """Those of a case; None where it has no small motions."""
+        with suppress(DerivationError, MissingValues):
+            return SmallMatrices(case, linearize(case.model).modes)
+        return None
+
+    @property
+    def equations(self) -> LinearEquations:
+        return self.modes.small.exact or self.modes.small.numbers
+
+    @cached_property
+    def s(self) -> Node:
+        """s of exp(s t), over the symbols of the case."""
+        return self.case.system.scope.graph.symbol(self._variable.name)
+
+    @property
+    def _variable(self) -> Node:
+        return self.equations.laplace_variable
+
+    def named(self, letter: str) -> list[tuple[Sequence[str], Sequence[str], Sequence[Sequence[Any]]]]:
+        """(names of the rows, of the columns, entries) of every matrix of that letter: B is one of two."""
+        e, small = self.equations, self.modes.small
+        q, u, w = ([x.name for x in some] for some in (e.coordinates, e.speeds, e.inputs))
+        rows = q if small.is_second_order else u
+        plain = {"B": (rows, w, e.B), "E": (q, u, e.E), "F": (q, q, e.F)}
+        found = [plain[letter]] if letter in plain else []
+        if letter in ("D", "G", "H"):
+            found.append((rows, q if letter == "H" else rows, self.modes.symmetric_parts[letter]))
+        if letter in ("A", "B", "C_y", "D_y"):
+            for space in self._spaces:
+                along = {"A": space.states, "B": space.inputs, "C_y": space.states, "D_y": space.inputs}[letter]
+                down = space.outputs if letter in ("C_y", "D_y") else space.states
+                found.append((down, along, getattr(space, letter)))
+        return found
+
+    @cached_property
+    def _spaces(self) -> tuple[StateMatrices, ...]:
+        small, outputs = self.modes.small, tuple(q.name for q in self.equations.coordinates)
+        exact = StateMatrices.exact(small, outputs)
+        if exact is not None or not small.reference.valued:
+            return () if exact is None else (exact,)
+        return (StateMatrices.of(small.numbers, small.state_matrix.tolist(), small.input_matrix.tolist(), outputs),)
+
+    def own(self, x: Any) -> Scalar:
+        """A scalar of the linearized system over the symbols of the case."""
+        if type(x) is not Node:
+            return x if not isinstance(x, float) else Fraction(x)
+        text = to_text(x)
+        names = {**self.case.system.scope.names, self._variable.name: self.s}
+        return parse(text, longest=len(text) + 1).evaluate(names)
+
+    def characteristic(self, *, circular: bool = False) -> Scalar | None:
+        """det(s^2 M + s C + K) of s; of a frequency, s = i s', where no odd power is in it. None: it is not known."""
+        found = self.modes.polynomial
+        if found is None:
+            return None
+        coefficients = [self.own(c) for c in found.coefficients]
+        if circular and not all(map(is_zero, coefficients[1::2])):
+            return None
+        signs = [(-1) ** (k // 2) if circular else 1 for k in range(len(coefficients))]
+        return sum((sign * c * self.s**k for k, (sign, c) in enumerate(zip(signs, coefficients, strict=True))), start=0)
+
+
+def of_small_motions(case: Case, given: str) -> Verdict | None:
+    """The verdict on an entry, a transfer function, the characteristic equation or a condition; None: it is no such."""
+    left, sign, right = (part.strip() for part in given.partition("="))
+    is_law, condition, entry = DETERMINANT.match(left), CONDITION.match(left), ENTRY.match(left)
+    if not sign or not (is_law or condition or entry) or (entry and entry["letter"][0] not in "ABCDEFGHW"):
+        return None
+    if condition and f"h_{condition[1]}" in case.system.scope.names:
+        return None
+    names = _names(case, entry) if entry else ()
+    if names is None or (small := SmallMatrices.of(case)) is None:
+        return None
+    if is_law:
+        if right == "0":
+            return Verdict(given, "frequency", RIGHT, DEFINES)
+        true = small.characteristic()
+    elif condition:
+        found = small.modes.conditions.expressions
+        k = int(condition[1]) - 1
+        true = small.own(found[k]) if 0 <= k < len(found) else None
+    else:
+        assert entry is not None
+        true = _entry(small, entry, *names)
+    return None if true is None else _compared(small, given, left, right, true)
+
+
+def _entry(small: SmallMatrices, entry: re.Match[str], row: str, column: str) -> Scalar | None:
+    """The true entry of a matrix, or the transfer function; None: there is none of that letter."""
+    letter = entry["letter"].replace("{", "").replace("}", "")
+    if letter == "W":
+        for f in small.modes.transfers:
+            if (f.coordinate.name, f.input.name) == (row, column):
+                return small.own(over(f.above.at(small._variable), f.below.at(small._variable)))
+        return None
+    for rows, columns, entries in small.named(letter):
+        if row in rows and column in columns:
+            return small.own(entries[list(rows).index(row)][list(columns).index(column)])
+    return None
+
+
+def _names(case: Case, entry: re.Match[str]) -> tuple[str, str] | None:
+    """Names of row and column as the model has them, \\dot\\theta as theta'; None: it has none of these."""
+    model = case.model
+    known = {*model.inputs, *(f"{q}{dot}" for q in model.coordinates for dot in ("", "'")), *model.speeds}
+    pieces = [piece.strip() for piece in (entry["text"] or entry["index"]).split(",")]
+    found = []
+    for piece in pieces if len(pieces) == 2 else ():
+        with suppress(ExpressionError):
+            code = case.reading.read(f"{piece} = 0").left.code
+            found += [str(code[0][1])] if len(code) == 1 and code[0][1] in known else []
+    return (found[0], found[1]) if len(found) == 2 else None
+
+
+def of_matrix(case: Case, given: str, letter: str, rows: Sequence[Sequence[str]]) -> Verdict | None:
+    """The verdict on a matrix that is given by its rows; None: there is none of that letter.
+
+    Raises:
+        ExpressionError: one of another size; an entry cannot be read.
+    """
+    plain = re.sub(r"[{}\s]", "", letter)
+    if plain not in LETTERS or (small := SmallMatrices.of(case)) is None:
+        return None
+    known = [x for x in small.named(plain) if x[2] and x[2][0]]
+    sized = [x for x in known if [len(row) for row in rows] == [len(x[1])] * len(x[0])]
+    if known and not sized:
+        sizes = " or ".join(f"{len(x[0])} rows and {len(x[1])} columns" for x in known)
+        raise ExpressionError(f"{letter} has {sizes}", 0)
+    verdict: Verdict | None = None
+    for down, along, entries in sized:
+        for name, true_row, row in zip(down, entries, rows, strict=True):
+            for other, true, entry in zip(along, true_row, row, strict=True):
+                verdict = _compared(small, given, f"{plain}[{name}, {other}]", entry, small.own(true))
+                if not verdict:
+                    break
+            if not verdict:
+                break
+        if verdict:
+            return verdict
+    return verdict
+
+
+def _compared(small: SmallMatrices, given: str, name: str, right: str, true: Scalar) -> Verdict:
+    """The verdict on what an author has for a true value.
+
+    Raises:
+        ExpressionError: it cannot be read, or has an unknown name.
+    """
+    case = small.case
+    written = case.reading.read(f"{right} = 0").left
+    author = case.value(written, {small.s.name: small.s})
+    if is_zero_everywhere(case.system, true - author).holds:
+        return Verdict(given, "frequency", RIGHT)
+    if _agree_in_numbers(small, true, author):
+        return Verdict(given, "frequency", RIGHT, "the values of the file")
+    difference = excess(case, true - author)
+    text = f"{name} is {readable_text(true)}" + (
+        f"; the left side minus the right side is {difference}" if difference else ""
+    )
+    return Verdict(given, "frequency", WRONG, difference=difference, causes=(Cause("other", text, quantity=name),))
+
+
+def _agree_in_numbers(small: SmallMatrices, true: Scalar, author: Scalar) -> bool:
+    """True if one of both is known in numbers alone, and they agree to what is printed of it."""
+    names = small.case.system.symbols.parameters.values()
+    if all(any(depends_on(x, (p,)) for p in names) for x in (true, author)):
+        return False
+    exact = {p: x for p, x in small.case.system.scope.known_parameters.items()}
+    sizes = []
+    for s in (0.37, 1.9):
+        try:
+            sizes.append([float(x) for x in evaluate((true, author), {**exact, small.s: s}, FLOAT)])
+        except (NoValue, ZeroDivisionError, KeyError, TypeError):
+            return False
+    return all(abs(a - b) <= tolerances.SEVEN_DIGITS * max(abs(a), abs(b)) for a, b in sizes)
+
+
+def of_eigenvalue(case: Case, written: HandEquation, unknown: Sequence[str]) -> Verdict | None:
+    """The verdict on a polynomial in an exponent that is 0, s^2 + omega_0^2 = 0; None: it is no such."""
+    if len(unknown) != 1 or unknown[0] not in (*EIGENVALUE, *CIRCULAR) or written.calls:
+        return None
+    if any(name.endswith("'") or name in case.model.coordinates for name in written.names):
+        return None
+    small = SmallMatrices.of(case)
+    if small is None or (true := small.characteristic(circular=unknown[0] in CIRCULAR)) is None:
+        return None
+    author = case.value(written.difference, {unknown[0]: small.s})
+    at = [substituted((x,), {small.s: TRIED})[0] for x in (true, author)]
+    if is_zero(at[1]):
+        return None
+    if is_zero_everywhere(case.system, true * at[1] - author * at[0]).holds:
+        return Verdict(written.given, "frequency", RIGHT, "the characteristic equation")
+    mine = Polynomial.of(author, small.s, case.system.scope.positive)
+    if mine is None or len(mine.coefficients) != len(small.modes.polynomial.coefficients):
+        return None
+    text = f"the characteristic equation is {readable_text(true)} = 0"
+    return Verdict(written.given, "frequency", WRONG, causes=(Cause("other", text, quantity="the determinant"),))
