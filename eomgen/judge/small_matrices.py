@@ -203,9 +203,7 @@ def _compared(small: SmallMatrices, given: str, name: str, right: str, true: Sca
     if _agree_in_numbers(small, true, author):
         return Verdict(given, "frequency", RIGHT, "the values of the file")
     difference = excess(case, true - author)
-    text = f"{name} is {readable_text(true)}" + (
-        f"; the left side minus the right side is {difference}" if difference else ""
-    )
+    text = f"it is {name} = {readable_text(true)}"
     return Verdict(given, "frequency", WRONG, difference=difference, causes=(Cause("other", text, quantity=name),))
 
 
