@@ -955,7 +955,7 @@ def test_derivatives_of_energies_are_no_products_of_letters(model, right, wrong)
     for equation, reported in ((right, "right"), (wrong, "wrong")):
         found = judge.verdict(equation)
         assert found.verdict == reported, found
-        (said,) = verdicts_again([judge.said(found)])
+        (said,) = verdicts_again(judge.said(found))
         assert said.ok or (said.ok is None and judge.case.reading.read(equation).takes_rates), said
 
 

@@ -379,11 +379,23 @@ def test_whether_a_contact_leaves_is_assumed_where_a_number_is_missing_and_said(
 # -- decided again --------------------------------------------------------------------------------------
 
 
+def test_each_link_of_a_chain_and_names_of_derivations_are_decided_again():
+    """T = a = b is two equations; M[..] and Q of one force have scalars of their own; a turned verdict fails."""
+    judge = Judge(Case(eomgen.load(MODELS / "simple_pendulum.toml")))
+    chain = judge.said(judge.verdict("T = 1/2*m*v_bob^2 = 1/2*m*l^2*theta'^2"))
+    entry = judge.said(judge.verdict("M[theta', theta'] = m*l^2"))
+    force = judge.said(judge.verdict("Q(theta, weight) = m*g*l*sin(theta)"))
+    assert (len(chain), len(entry), len(force)) == (2, 1, 1)
+    for said in (*chain, *entry, *force):
+        turned_round = replace(said, is_right=not said.is_right, up_to="")
+        assert [check.status for check in verdicts_again([said])] == ["holds"]
+        assert [check.status for check in verdicts_again([turned_round])] == ["fails"]
+
+
 def turned(model: eomgen.Model, equation: str) -> list[tuple[str, str]]:
     """What the second decision says of a verdict, and of the verdict turned round."""
     judge = Judge(Case(model))
-    said = judge.said(judge.verdict(equation))
-    assert said is not None
+    (said,) = judge.said(judge.verdict(equation))
     both = (said, replace(said, is_right=not said.is_right, up_to="" if said.is_right else said.up_to))
     return [(check.status, check.detail) for each in both for check in verdicts_again([each])]
 
@@ -461,7 +473,7 @@ def test_a_law_of_a_body_that_slides_holds_while_it_slides_on(equation, verdict)
 def test_a_factor_and_a_difference_that_vanish_are_contradicted(text, equation, reported):
     """What an equation was multiplied by is not 0, and what is too much in it does not vanish by the equations."""
     judge = Judge(Case(eomgen.loads(text)))
-    said = judge.said(judge.verdict(equation))
+    (said,) = judge.said(judge.verdict(equation))
     assert [check.status for check in verdicts_again([said])] == ["holds"]
     (check,) = verdicts_again([replace(said, **reported)])
     assert check.status == "fails" and "0 at every state" in check.detail

@@ -240,9 +240,7 @@ class Judgements:
         equations = self.judge.case.equations
         if equations is None:
             return Certificate(())
-        said = [
-            each for verdict in self.found if again and (each := self.judge.said(verdict, self.defined)) is not None
-        ]
+        said = [each for verdict in self.found if again for each in self.judge.said(verdict, self.defined)]
         return certify(equations) + verdicts_again(said)
 
 

@@ -213,10 +213,12 @@ class Judge:
 
     def _of_several(self, given: str, several: Sequence[str], **meant: Any) -> Verdict:
         """The verdict on a chain or on rows: that of the first that is not right, of the last where all are."""
+        parts: list[Verdict] = []
         for each in several:
-            if not (verdict := self.verdict(each, **meant)):
-                return verdict
-        return replace(verdict, given=given)
+            parts.append(self.verdict(each, **meant))
+            if not parts[-1]:
+                break
+        return replace(parts[-1], given=given if parts[-1] else parts[-1].given, parts=tuple(parts))
 
     def _to_first_order(self, written: HandEquation, found: Verdict) -> Verdict:
         """A verdict on a wrong equation of motion that is right beside a place: right where that is enough."""
@@ -244,13 +246,13 @@ class Judge:
             raise ExpressionError(f"'{letter}' is no matrix that is judged", 0, f"one of {', '.join(MATRICES)}")
         if [len(row) for row in rows] != [len(names)] * len(names):
             raise ExpressionError(f"{letter} has {len(names)} rows and columns: {', '.join(names)}", 0)
-        verdict = Verdict(given, "frequency", RIGHT)
+        parts: list[Verdict] = []
         for name, row in zip(names, rows, strict=True):
             for other, entry in zip(names, row, strict=True):
-                verdict = self.verdict(f"{MATRICES[letter]}({name}, {other}) = {entry}", kind="frequency")
-                if not verdict:
-                    return replace(verdict, given=given)
-        return replace(verdict, given=given)
+                parts.append(self.verdict(f"{MATRICES[letter]}({name}, {other}) = {entry}", kind="frequency"))
+                if not parts[-1]:
+                    return replace(parts[-1], given=given, parts=tuple(parts))
+        return replace(parts[-1], given=given, parts=tuple(parts))
 
     def _may_be_of_rest(self, written: HandEquation) -> bool:
         """True if it is the condition Q = 0 of equilibrium, or a stiffness there."""
@@ -310,8 +312,14 @@ class Judge:
         """True if an equation that was read is right."""
         return bool(self._of_axes(written, kind, None))
 
-    def said(self, verdict: Verdict, defined: Mapping[str, Expression] | None = None) -> JudgedEquation | None:
-        """A verdict as it is decided again by numbers; None of what is undecided, or wrong because it says nothing."""
+    def said(self, verdict: Verdict, defined: Mapping[str, Expression] | None = None) -> tuple[JudgedEquation, ...]:
+        """The equations of a verdict as they are decided again by numbers; none that says nothing or is undecided."""
+        if verdict.parts:
+            return tuple(each for part in verdict.parts for each in self.said(part, defined))
+        found = self._said(verdict, defined)
+        return () if found is None else (found,)
+
+    def _said(self, verdict: Verdict, defined: Mapping[str, Expression] | None) -> JudgedEquation | None:
         empty = any(cause.quantity in SAYS_NOTHING for cause in verdict.causes)
         if verdict.verdict == UNDECIDED or empty:
             return None
@@ -319,7 +327,10 @@ class Judge:
         equations = (begun or self.case).equations
         if equations is None:
             return None
-        written = self.case.reading.read(verdict.given, defined)
+        try:
+            written = self.case.reading.read(verdict.given, defined)
+        except ExpressionError:  # det(s^2 M + C s + K), an entry of A: what linearize proves
+            written = HandEquation(verdict.given, Expression.number(0), Expression.number(0))
         if GROUND in verdict.up_to:
             written = along_ground_axes(written)
         if NAMED in verdict.up_to:
@@ -341,7 +352,12 @@ class Judge:
             tuple(names),
             self.case.at_rest,
             verdict.difference,
+            self._derived_in(written),
         )
+
+    def _derived_in(self, written: HandEquation) -> dict[str, Scalar]:
+        """The values of quantities that derivations name, by the texts of the functions that ask for them."""
+        return {str(call): self.case.called(call) for call in written.calls if call.name == DERIVED}
 
     def _judged(self, written: HandEquation, kind: str, at: Instant) -> Verdict:
         case = self.case

@@ -126,6 +126,7 @@ class Verdict:
         causes: why it is wrong.
         reason: why it is undecided, in words.
         unknown: names in it that mean nothing; where there are some it is undecided.
+        parts: of a chain or a matrix the verdicts on its equations, up to the first that is not right.
     """
 
     given: str
@@ -137,6 +138,7 @@ class Verdict:
     causes: tuple[Cause, ...] = ()
     reason: str = ""
     unknown: tuple[str, ...] = ()
+    parts: tuple[Verdict, ...] = ()
 
     def __bool__(self) -> bool:
         return self.verdict == RIGHT

@@ -31,7 +31,7 @@ from eomgen.proof.check import Check, Tally
 from eomgen.proof.in_numbers import STEP
 from eomgen.proof.instant import NearbyStates
 from eomgen.proof.trials import Trials
-from eomgen.symbolic.expression import SLOPE, Call, Expression, Fraction, Node, parse
+from eomgen.symbolic.expression import SLOPE, Call, Expression, Fraction, Node, Scalar, parse
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 
 NEAR, FAR = 5, 2  # states near the start, and at random with other parameters
@@ -62,6 +62,7 @@ class JudgedEquation:
         equations: the equations of motion against which it was judged.
         at_rest: the motion starts with all speeds 0.
         difference: what is reported as too much on the left, as a text; "".
+        derived: scalars of quantities that derivations name, M[x', y'], by the texts of what asks for them.
     """
 
     text: str
@@ -75,6 +76,7 @@ class JudgedEquation:
     constants: tuple[str, ...] = ()
     at_rest: bool = False
     difference: str = ""
+    derived: Mapping[str, Scalar] = field(default_factory=dict)
 
     @property
     def is_of_start(self) -> bool:
@@ -254,7 +256,7 @@ class Rounded:
 def _at(state: NumericState, judged: JudgedEquation) -> Rounded | None:
     """Left side minus right side at a state; None where it has no value there, or is stated for another piece."""
     error = tolerances.CARRIED if judged.is_of_start else tolerances.ITERATED
-    sides = Sides(state, judged.stands_for, error)
+    sides = Sides(state, judged.stands_for, error, derived=judged.derived)
     try:
         if any(sides.worked(condition).value < 0 for condition in _conditions(judged.up_to)):
             return None
@@ -308,12 +310,14 @@ class Sides:
         stands_for: names of the author and what they stand for.
         error: of what is known of the state, relative.
         constants: values for names of the author that stand for nothing.
+        derived: scalars of quantities that derivations name.
     """
 
     state: NumericState
     stands_for: Mapping[str, str]
     error: float
     constants: Mapping[str, float] = field(default_factory=dict)
+    derived: Mapping[str, Scalar] = field(default_factory=dict)
 
     def difference(self, judged: JudgedEquation) -> Rounded:
         """Left minus right."""
@@ -401,6 +405,9 @@ class Sides:
         if call.name == SLOPE:
             slope = self._slope(call)
             return Rounded(slope, tolerances.COMPUTED * abs(slope) + self.error * self._size(call))
+        if (derived := self.derived.get(str(call))) is not None:
+            value = float(evaluate((derived,), self._values, fifty_digits())[0])
+            return Rounded(value, tolerances.COMPUTED * abs(value) + self.error * self._size(call))
         if call.name not in FUNCTIONS:
             raise NoValue(f"'{call.name}' is no function of the outputs")
         function = FUNCTIONS[call.name]
