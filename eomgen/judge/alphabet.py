@@ -19,6 +19,8 @@ ALIKE |= {
     "≈": "=",
     "≡": "=",
     "ʹ": "'",
+    "˙": "'",  # dots that stand behind their letter
+    "¨": "''",
     "\u00a0": " ",
 }
 

@@ -13,8 +13,10 @@ from eomgen.frozen import dataclass
 from eomgen.judge.answers import of_output, of_unknown, requested
 from eomgen.judge.case import Case
 from eomgen.judge.comparison import Comparison, excess, first_order_place, remainder
+from eomgen.judge.conventions import UNDAMPED, is_of_kinetic_energy, with_constant_forces, without_damping
 from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.fixes import Authored, Fixes
+from eomgen.judge.forces_in_space import of_forces_in_space
 from eomgen.judge.implied import (
     Explainable,
     Instant,
@@ -28,6 +30,7 @@ from eomgen.judge.implied import (
 )
 from eomgen.judge.reading import DERIVED, HandEquation, along_ground_axes, of_free_coordinates
 from eomgen.judge.renaming import Renaming, renamings
+from eomgen.judge.sections import of_sections, section_at
 from eomgen.judge.small_matrices import of_eigenvalue, of_matrix, of_small_motions
 from eomgen.judge.truth import (
     CONSTANT,
@@ -185,6 +188,14 @@ class Judge:
         of_small = of_small_motions(self.case, equation) if at is None and isinstance(equation, str) else None
         if of_small is not None:
             return of_small
+        if at is None and isinstance(equation, str) and (named := section_at(self.case, equation)) is not None:
+            text, meant = named
+            verdict = self.verdict(text, kind=kind, defined={**(defined or {}), **meant})
+            shown = dict.fromkeys(meant, equation.partition("=")[0].strip())
+            return replace(verdict.in_letters(shown), given=equation)
+        of_section = of_sections(self.case, equation) if at is None and isinstance(equation, str) else None
+        if of_section is not None:
+            return of_section
         written = self.case.reading.read(equation, defined)
         known = kind or kind_of_equation(written, self.case.model)
         answered = of_output(self.case, written, at)
@@ -218,6 +229,10 @@ class Judge:
             parts.append(self.verdict(each, **meant))
             if not parts[-1]:
                 break
+        if parts[-1].unknown and (others := _without_first(several, parts[-1].unknown)):
+            found = self._of_several(given, others, **meant)
+            up_to = f"{', '.join(parts[-1].unknown)}, which the model does not have"
+            return replace(found, up_to=" and ".join(filter(None, (found.up_to, up_to)))) if found else found
         return replace(parts[-1], given=given if parts[-1] else parts[-1].given, parts=tuple(parts))
 
     def _to_first_order(self, written: HandEquation, found: Verdict) -> Verdict:
@@ -290,6 +305,8 @@ class Judge:
             yield NAMED, derived
         if (otherwise := self.case.reading.otherwise(given, defined)) is not None:
             yield OTHERWISE, otherwise
+        if (undamped := without_damping(self.case, written)) is not None:
+            yield UNDAMPED, undamped
 
     def _of_axes(self, written: HandEquation, known: str, at: Any) -> Verdict:
         """Verdict on an equation whose reactions are along known axes."""
@@ -304,9 +321,24 @@ class Judge:
 
     def _of_reading(self, written: HandEquation, kind: str, at: Any) -> Verdict:
         try:
-            return self._judged(written, kind, _instant(self.case, at)).in_letters(written.letters)
+            found = self._judged(written, kind, _instant(self.case, at))
+            if found.verdict == WRONG and at is None and (cause := of_forces_in_space(self.case, written)) is not None:
+                or_else = next((x.text for x in found.causes if x.kind != "other"), "")
+                found = replace(found, causes=(replace(cause, or_else=or_else),))
+            return found.in_letters(self._letters_of(written))
         except (DerivationError, RunFailed, MissingValues) as error:
             return Verdict(written.given, kind, UNDECIDED, reason=error.what)
+
+    def _letters_of(self, written: HandEquation) -> Mapping[str, str]:
+        """Letters in an equation; where it has some for reactions those of other reactions too, B_x beside B_y."""
+        if not any(FUNCTION_KINDS.get(text.partition("(")[0]) == "reaction" for text in written.letters):
+            return written.letters
+        found = dict(written.letters)
+        for letter, formula in sorted(self.case.reading.letters.items(), key=lambda x: x[0].endswith(("_H", "_V"))):
+            (kind, what), *rest = formula.code
+            if not rest and kind == "call" and FUNCTION_KINDS.get(what.name) == "reaction":
+                found.setdefault(str(what), letter)
+        return found
 
     def is_right(self, written: HandEquation, kind: str) -> bool:
         """True if an equation that was read is right."""
@@ -420,7 +452,7 @@ class Judge:
     def _of_scalar(self, written: HandEquation, kind: str, scalar: Scalar) -> Verdict:
         """The verdict on an equation whose names are all known."""
         case = self.case
-        found = truth_of(case, scalar, kind)
+        found = truth_of(case, scalar, kind, to_a_constant=not is_of_kinetic_energy(written))
         if found.why == IDENTITY and any(FUNCTION_KINDS.get(call.name) == "reaction" for call in written.calls):
             found = Decided(True, "the balance of forces")
         elif found.why == IDENTITY:
@@ -431,6 +463,7 @@ class Judge:
                 or with_definitions(case, kind, scalar)
                 or with_values_of_file(case, written, kind, scalar)
                 or on_one_side(case, written, kind, scalar)
+                or with_constant_forces(case, written, kind)
                 or found
             )
         elif found.why == CONSTANT:  # with another value, but of the file's numbers it may be this one
@@ -627,6 +660,19 @@ def _apart(difference: str, beside: str = "") -> Cause:
     """The cause that the sides differ, where nothing explains it."""
     text = f"the sides differ by {difference}" if difference else "the sides differ"
     return Cause("other", f"{text}{beside}", term=difference)
+
+
+def _without_first(several: Sequence[str], unknown: Sequence[str]) -> list[str]:
+    """b = c of a chain a = b = c whose first member alone has names that mean nothing; []: it is no such."""
+    sides = [each.partition(" = ") for each in several]
+    first, others = sides[0][0], [right for _, _, right in sides]
+    if len(several) < 2 or any(left != first for left, _, _ in sides) or matrix_of(several[0]) is not None:
+        return []
+    plain = [re.sub(r"\W|\d|_", "", side) for side in (first, *others)]
+    named = [re.sub(r"\W|\d|_", "", name) for name in unknown]
+    if not all(name in plain[0] for name in named) or any(name in side for name in named for side in plain[1:]):
+        return []
+    return [f"{others[0]} = {other}" for other in others[1:]]
 
 
 def _left_in(force: str) -> str:

@@ -295,6 +295,8 @@ def _with_leaf(part: Any, path: Sequence[Any], value: Any) -> Any:
     if not path:
         return (value,) if isinstance(part, tuple) else value
     key, *rest = path
+    if isinstance(part, tuple) and not isinstance(key, int):  # one table in the place of a list of them
+        return (_with_leaf(part[0], path, value),)
     if isinstance(part, tuple):
         return (*part[:key], _with_leaf(part[key], rest, value), *part[key + 1 :])
     if isinstance(part, Table):

@@ -290,14 +290,37 @@ class Reading:
         for letter, call in self._reactions():
             found.setdefault(letter, _called(call.name, *call.args))
         for kind, letters in ONLY.items():
-            of_kind = [_called(x.name, *x.args) for each, x in self._requested if each.function == kind]
+            of_kind = [_called(x.name, *x.args) for each, x in self.requested if each.function == kind]
             for letter in letters if len(of_kind) == 1 else ():
                 found.setdefault(letter, of_kind[0])
             for k, formula in enumerate(of_kind if kind == "tension" and len(of_kind) > 1 else (), start=1):
                 found = {f"S_{k}": formula, f"S{k}": formula} | found
+        for letter, formula in self._plain_letters:
+            found.setdefault(letter, formula)
         points = model.named_points if model.space == "plane" and model.bodies else ()
         found |= {f"{letter}_{x}": _called("inertia_point", Reference(x)) for x in points for letter in "JI"} | found
         return {letter: formula for letter, formula in found.items() if letter not in own}
+
+    @property
+    def _plain_letters(self) -> Iterator[tuple[str, Expression]]:
+        """Letters that stand for what is alone of its kind.
+
+        B for the only force of the support B, A_H and A_V for those along x and y of A, J_S for the moment of inertia
+        of the only body with mass about its mass centre.
+        """
+        model = self.system.scope.model
+        forces: dict[str, list[Call]] = {}
+        for each, call in self.requested:
+            forces.setdefault(each.owner, []).append(call)
+        for owner, calls in forces.items():
+            if len(calls) == 1 and owner in model.constraints:
+                yield owner, _called(calls[0].name, *calls[0].args)
+            for letter, axis in (("H", "x"), ("V", "y")) if model.space == "plane" else ():
+                yield f"{owner}_{letter}", _called(f"reaction_{axis}", Reference(owner))
+        heavy = [body for body in model.bodies if not is_zero(self.system.scope.mass_properties(body).m)]
+        if len(heavy) == 1 and model.space == "plane":
+            center = _called("inertia_point", Reference(f"{heavy[0]}.center"), Reference(heavy[0]))
+            yield from ((f"{letter}_{of}", center) for letter in ("J", "I", "Theta") for of in "SCG")
 
     @property
     def _energies(self) -> dict[str, Expression]:
@@ -306,7 +329,7 @@ class Reading:
         return {"T": T, "V": V, "L": T - V, **letters}
 
     @cached_property
-    def _requested(self) -> tuple[tuple[RequestedReaction, Call], ...]:
+    def requested(self) -> tuple[tuple[RequestedReaction, Call], ...]:
         """(a reaction that can be requested, how); none where something acts at no place."""
         found = []
         with suppress(DerivationError):
@@ -317,7 +340,7 @@ class Reading:
 
     def _declared_letters(self) -> Iterator[tuple[str, Call]]:
         """The symbols that joints and constraints give their reactions, as plain names, and what each stands for."""
-        for each, call in self._requested:
+        for each, call in self.requested:
             if each.declared is not None:
                 yield plain_name(each.declared.base, each.declared.below), call
 
@@ -331,7 +354,7 @@ class Reading:
     def _reactions(self) -> Iterator[tuple[str, Call]]:
         """Letters of reactions and multipliers, and the function that each stands for."""
         model = self.system.scope.model
-        for each, call in self._requested:
+        for each, call in self.requested:
             yield from ((letter, self._as_derived(call, each.owner)) for letter in each.letters)
         joints = {name: body.joint.symbol for name, body in model.bodies.items() if body.joint is not None}
         owners = {**dict.fromkeys(model.constraints), **joints}
@@ -382,7 +405,8 @@ class Reading:
             meant[letter] = Expression.number(0) - self.letters[letter]
         free = [q for q, x in model.coordinates.items() if not x.driven and not x.dependent]
         if len(free) == 1:
-            meant |= {x: parse(free[0] + dots) for x, dots in (("a", "''"), ("v", "'")) if x in names - {*self.letters}}
+            rates = (("a", "''"), ("v", "'"), ("v'", "''"))
+            meant |= {x: parse(free[0] + dots) for x, dots in rates if x in names - {*self.letters}}
         heavy = [body for body in model.bodies if not is_zero(self.system.scope.mass_properties(body).m)]
         if "v" in names - {*self.letters} and len(free) > 1 and len(heavy) == 1:
             meant["v"] = _called("speed", Reference(f"{heavy[0]}.center"))
@@ -501,6 +525,11 @@ class Reading:
         for kind, what in side.code:
             if kind == "name" and what not in own and what in known:
                 code += known[what].code
+            elif kind == "name" and what not in own and what.rstrip("'") in known:  # the rate of a letter
+                rate = known[what.rstrip("'")]
+                for _ in range(len(what) - len(what.rstrip("'"))):
+                    rate = _called(RATE, rate)
+                code += rate.code
             elif kind == "call" and what.name == RATE:
                 args = tuple(self._meant(x if isinstance(x, Expression) else parse(x.name), known) for x in what.args)
                 code.append(("call", replace(what, args=args)))

@@ -67,15 +67,19 @@ class Decided:
     why: str = ""
 
 
-def truth_of(case: Case, scalar: Scalar, kind: str) -> Decided:
-    """The decision whether a scalar vanishes in every motion of the case, with what had to be used to see it."""
+def truth_of(case: Case, scalar: Scalar, kind: str, *, to_a_constant: bool = True) -> Decided:
+    """The decision whether a scalar vanishes in every motion of the case, with what had to be used to see it.
+
+    Args:
+        to_a_constant: of energies a constant may be left, as of a potential one.
+    """
     found = is_zero_everywhere(case.system, scalar)
     if found.holds:
         if kind == "motion":
             return Decided(False, why=IDENTITY)
         return Decided(True, "the constraints" if found.on_constraints else "")
     undecided = found.holds is None
-    if kind == "energy" and _is_constant_of_potential(case, scalar):
+    if kind == "energy" and to_a_constant and _is_constant_of_potential(case, scalar):
         return Decided(True, OF_ENERGIES[-1])
     if (of_positions := _integral_of_positions(case, scalar)) is not None:
         return of_positions

@@ -29,6 +29,8 @@ FORMULA = re.compile(
 COMMENT = re.compile(r"(?<!\\)%.*")
 NUMBERED = re.compile(r"\\(?:label|tag)\*?\{[^}]*\}|\\(?:nonumber|notag)\b")
 SIGN = re.compile(r"(?<![<>!:=])=(?!=)")
+LABEL = re.compile(r"^\s*(?:\\(?:quad|;|,|!)\s*)*[^:<>≤≥]{0,60}:(?![=:])\s*(?=[^:]*=)")
+"""what stands before a colon in front of an equation: sum M_A = 0:, (1):"""
 PUT_ASIDE = re.compile(r"(?:\\left|\\right|\s|[()])*\\matrix\{(\d+)\}(?:\\left|\\right|\s|[()])*")
 COMMA = re.compile(r",")
 BRACKETED = re.compile(r"\[([^\[\]]*)\]")
@@ -70,6 +72,7 @@ def equations_of(page: str) -> list[PageEquation]:
 
 def equations_in(given: str) -> list[str]:
     """The single equations of what is given as one: of a chain, of rows; itself where it is one, or none."""
+    given = LABEL.sub("", given)
     if len(_signs(given)) < 2 and not ENVIRONMENT.search(given) and not MATRIX.search(given):
         return [given]
     return [each.text for each in _of_display(given, 1)] or [given]
@@ -162,6 +165,7 @@ def _signs(text: str) -> list[int]:
 
 def _chained(text: str, line: int) -> Iterator[PageEquation]:
     """a = b = c as a = b and a = c."""
+    text = LABEL.sub("", text)
     signs = _signs(text)
     if not signs:
         return

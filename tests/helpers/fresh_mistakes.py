@@ -38,10 +38,10 @@ def lines(path: Path) -> Iterator[tuple[str, str, list[list[str]], dict[str, str
 
 def reported(judge: Judge, text: str, options: dict[str, str]) -> tuple[str, str]:
     """(verdict, the causes that are named, and what would explain it as well); `refused` where there is no verdict."""
-    if "from_rest" in options:
-        judge = Judge(Case(judge.case.model, at_rest=True))
+    if "from_rest" in options or "to_first_order" in options:
+        judge = Judge(Case(judge.case.model, at_rest="from_rest" in options), "to_first_order" in options)
     try:
-        found = judge.verdict(text, **{name: x for name, x in options.items() if name != "from_rest"})
+        found = judge.verdict(text, **{name: x for name, x in options.items() if name in ("at", "kind")})
     except EomgenError as error:
         return "refused", str(error)
     named = [cause for cause in found.causes if cause.kind != "other"]
