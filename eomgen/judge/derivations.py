@@ -93,6 +93,8 @@ def _line(judge: Judge, equation: PageEquation, defined: dict[str, Expression]) 
     try:
         if matrix_of(equation.text) is not None:
             return DerivationLine(equation, judge.verdict(equation.text))
+        if (printed := judge.of_printed(equation.text, defined=defined)) is not None:
+            return DerivationLine(equation, printed)
         written = judge.case.reading.read(equation.text, defined)
         if is_general and judge.case.unknown_names(written):  # r_i may be a name of the model
             return A_LAW

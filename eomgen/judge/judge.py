@@ -185,17 +185,9 @@ class Judge:
             return self._of_several(equation, several, at=at, kind=kind, defined=defined)
         if (matrix := matrix_of(equation) if isinstance(equation, str) else None) is not None:
             return self._of_matrix(equation, *matrix)
-        of_small = of_small_motions(self.case, equation) if at is None and isinstance(equation, str) else None
-        if of_small is not None:
-            return of_small
-        if at is None and isinstance(equation, str) and (named := section_at(self.case, equation)) is not None:
-            text, meant = named
-            verdict = self.verdict(text, kind=kind, defined={**(defined or {}), **meant})
-            shown = dict.fromkeys(meant, equation.partition("=")[0].strip())
-            return replace(verdict.in_letters(shown), given=equation)
-        of_section = of_sections(self.case, equation) if at is None and isinstance(equation, str) else None
-        if of_section is not None:
-            return of_section
+        printed = self.of_printed(equation, kind, defined) if at is None and isinstance(equation, str) else None
+        if printed is not None:
+            return printed
         written = self.case.reading.read(equation, defined)
         known = kind or kind_of_equation(written, self.case.model)
         answered = of_output(self.case, written, at)
@@ -221,6 +213,22 @@ class Judge:
         if answered is not None and (is_number or found.verdict == UNDECIDED):
             return answered
         return self._to_first_order(written, found)
+
+    def of_printed(
+        self, equation: str, kind: str | None = None, defined: Mapping[str, Expression] | None = None
+    ) -> Verdict | None:
+        """The verdict on what `linearize` and `statics` print under names of their own; None: it is no such.
+
+        Raises:
+            ExpressionError: its right side cannot be read.
+        """
+        if (named := section_at(self.case, equation)) is not None:
+            text, meant = named
+            verdict = self.verdict(text, kind=kind, defined={**(defined or {}), **meant})
+            shown = dict.fromkeys(meant, equation.partition("=")[0].strip())
+            return replace(verdict.in_letters(shown), given=equation)
+        found = of_small_motions(self.case, equation)
+        return found if found is not None else of_sections(self.case, equation)
 
     def _of_several(self, given: str, several: Sequence[str], **meant: Any) -> Verdict:
         """The verdict on a chain or on rows: that of the first that is not right, of the last where all are."""
@@ -334,7 +342,8 @@ class Judge:
         if not any(FUNCTION_KINDS.get(text.partition("(")[0]) == "reaction" for text in written.letters):
             return written.letters
         found = dict(written.letters)
-        for letter, formula in sorted(self.case.reading.letters.items(), key=lambda x: x[0].endswith(("_H", "_V"))):
+        outputs = self.case.model.outputs
+        for letter, formula in sorted(self.case.reading.letters.items(), key=lambda x: x[0] not in outputs):
             (kind, what), *rest = formula.code
             if not rest and kind == "call" and FUNCTION_KINDS.get(what.name) == "reaction":
                 found.setdefault(str(what), letter)

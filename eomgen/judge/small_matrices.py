@@ -34,6 +34,7 @@ EIGENVALUE = ("s", "lambda", "p", "r")
 """letters of an exponent exp(s t) that an author may have"""
 CIRCULAR = ("omega", "w")
 """letters of a frequency, s = i omega"""
+Named = tuple[Sequence[str], Sequence[str], Sequence[Sequence[Any]]]
 TRIED = Fraction(3, 7)  # a value of s at which polynomials are compared
 DEFINES = "what the characteristic equation is"
 
@@ -65,13 +66,13 @@ class SmallMatrices:
     def _variable(self) -> Node:
         return self.equations.laplace_variable
 
-    def named(self, letter: str) -> list[tuple[Sequence[str], Sequence[str], Sequence[Sequence[Any]]]]:
+    def named(self, letter: str) -> list[Named]:
         """(names of the rows, of the columns, entries) of every matrix of that letter: B is one of two."""
         e, small = self.equations, self.modes.small
         q, u, w = ([x.name for x in some] for some in (e.coordinates, e.speeds, e.inputs))
         rows = q if small.is_second_order else u
-        plain = {"B": (rows, w, e.B), "E": (q, u, e.E), "F": (q, q, e.F)}
-        found = [plain[letter]] if letter in plain else []
+        plain: dict[str, Named] = {"B": (rows, w, e.B), "E": (q, u, e.E), "F": (q, q, e.F)}
+        found: list[Named] = [plain[letter]] if letter in plain else []
         if letter in ("D", "G", "H"):
             found.append((rows, q if letter == "H" else rows, self.modes.symmetric_parts[letter]))
         if letter in ("A", "B", "C_y", "D_y"):
@@ -238,7 +239,8 @@ def of_eigenvalue(case: Case, written: HandEquation, unknown: Sequence[str]) -> 
     if is_zero_everywhere(case.system, true * at[1] - author * at[0]).holds:
         return Verdict(written.given, "frequency", RIGHT, "the characteristic equation")
     mine = Polynomial.of(author, small.s, case.system.scope.positive)
-    if mine is None or len(mine.coefficients) != len(small.modes.polynomial.coefficients):
+    known = small.modes.polynomial
+    if mine is None or known is None or len(mine.coefficients) != len(known.coefficients):
         return None
     text = f"the characteristic equation is {readable_text(true)} = 0"
     return Verdict(written.given, "frequency", WRONG, causes=(Cause("other", text, quantity="the determinant"),))

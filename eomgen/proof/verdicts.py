@@ -406,8 +406,8 @@ class Sides:
             slope = self._slope(call)
             return Rounded(slope, tolerances.COMPUTED * abs(slope) + self.error * self._size(call))
         if (derived := self.derived.get(str(call))) is not None:
-            value = float(evaluate((derived,), self._values, fifty_digits())[0])
-            return Rounded(value, tolerances.COMPUTED * abs(value) + self.error * self._size(call))
+            known = float(evaluate((derived,), self._values, fifty_digits())[0])
+            return Rounded(known, tolerances.COMPUTED * abs(known) + self.error * self._size(call))
         if call.name not in FUNCTIONS:
             raise NoValue(f"'{call.name}' is no function of the outputs")
         function = FUNCTIONS[call.name]
