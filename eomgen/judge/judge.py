@@ -13,10 +13,8 @@ from eomgen.frozen import dataclass
 from eomgen.judge.answers import of_output, of_unknown, requested
 from eomgen.judge.case import Case
 from eomgen.judge.comparison import Comparison, excess, first_order_place, remainder
-from eomgen.judge.conventions import UNDAMPED, is_of_kinetic_energy, with_constant_forces, without_damping
 from eomgen.judge.decision import is_zero_everywhere
-from eomgen.judge.fixes import Authored, Fixes
-from eomgen.judge.forces_in_space import of_forces_in_space
+from eomgen.judge.fixes import Authored, Fixes, of_forces_in_space
 from eomgen.judge.implied import (
     Explainable,
     Instant,
@@ -28,10 +26,16 @@ from eomgen.judge.implied import (
     simplest_explanation,
     targets_of,
 )
+from eomgen.judge.printed_answers import of_eigenvalue, of_matrix, of_sections, of_small_motions, section_at
 from eomgen.judge.reading import DERIVED, HandEquation, along_ground_axes, of_free_coordinates
-from eomgen.judge.renaming import Renaming, renamings
-from eomgen.judge.sections import of_sections, section_at
-from eomgen.judge.small_matrices import of_eigenvalue, of_matrix, of_small_motions
+from eomgen.judge.renaming import (
+    UNDAMPED,
+    Renaming,
+    is_of_kinetic_energy,
+    renamings,
+    with_constant_forces,
+    without_damping,
+)
 from eomgen.judge.truth import (
     CONSTANT,
     IDENTITY,
@@ -66,7 +70,7 @@ from eomgen.judge.verdict import (
     causes_of,
     kind_of_equation,
 )
-from eomgen.judge.written_pages import equations_in, matrix_of
+from eomgen.judge.written_pages import equations_in, matrix_of, without_first
 from eomgen.model import AtRest, ModelOrPath, equation_in
 from eomgen.proof import JudgedEquation
 from eomgen.resources import doing
@@ -237,7 +241,7 @@ class Judge:
             parts.append(self.verdict(each, **meant))
             if not parts[-1]:
                 break
-        if parts[-1].unknown and (others := _without_first(several, parts[-1].unknown)):
+        if parts[-1].unknown and (others := without_first(several, parts[-1].unknown)):
             found = self._of_several(given, others, **meant)
             up_to = f"{', '.join(parts[-1].unknown)}, which the model does not have"
             return replace(found, up_to=" and ".join(filter(None, (found.up_to, up_to)))) if found else found
@@ -669,19 +673,6 @@ def _apart(difference: str, beside: str = "") -> Cause:
     """The cause that the sides differ, where nothing explains it."""
     text = f"the sides differ by {difference}" if difference else "the sides differ"
     return Cause("other", f"{text}{beside}", term=difference)
-
-
-def _without_first(several: Sequence[str], unknown: Sequence[str]) -> list[str]:
-    """b = c of a chain a = b = c whose first member alone has names that mean nothing; []: it is no such."""
-    sides = [each.partition(" = ") for each in several]
-    first, others = sides[0][0], [right for _, _, right in sides]
-    if len(several) < 2 or any(left != first for left, _, _ in sides) or matrix_of(several[0]) is not None:
-        return []
-    plain = [re.sub(r"\W|\d|_", "", side) for side in (first, *others)]
-    named = [re.sub(r"\W|\d|_", "", name) for name in unknown]
-    if not all(name in plain[0] for name in named) or any(name in side for name in named for side in plain[1:]):
-        return []
-    return [f"{others[0]} = {other}" for other in others[1:]]
 
 
 def _left_in(force: str) -> str:

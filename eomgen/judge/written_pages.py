@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from eomgen.errors import ExpressionError
@@ -76,6 +76,19 @@ def equations_in(given: str) -> list[str]:
     if len(_signs(given)) < 2 and not ENVIRONMENT.search(given) and not MATRIX.search(given):
         return [given]
     return [each.text for each in _of_display(given, 1)] or [given]
+
+
+def without_first(several: Sequence[str], unknown: Sequence[str]) -> list[str]:
+    """b = c of a chain a = b = c whose first member alone has names that mean nothing; []: it is no such."""
+    sides = [each.partition(" = ") for each in several]
+    first, others = sides[0][0], [right for _, _, right in sides]
+    if len(several) < 2 or any(left != first for left, _, _ in sides) or matrix_of(several[0]) is not None:
+        return []
+    plain = [re.sub(r"\W|\d|_", "", side) for side in (first, *others)]
+    named = [re.sub(r"\W|\d|_", "", name) for name in unknown]
+    if not all(name in plain[0] for name in named) or any(name in side for name in named for side in plain[1:]):
+        return []
+    return [f"{others[0]} = {other}" for other in others[1:]]
 
 
 # -- LaTeX and Markdown ----------------------------------------------------------------------------------------
