@@ -367,6 +367,7 @@ def codegen_command(
 @TRAIL(default="", help="A point that leaves a trail from the start.")
 @FORCES(help="Show arrows of forces from the start.")
 @SPEED
+@LANGUAGE
 @with_proof
 def play_command(model: str, wants_json: bool, output: str, strict: bool, **options: Any) -> int:
     """Write an interactive page of a model.

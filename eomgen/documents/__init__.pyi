@@ -107,6 +107,9 @@ from eomgen.documents.json_form import equations_payload as equations_payload
 from eomgen.documents.json_form import payload_texts as payload_texts
 from eomgen.documents.languages import Catalogue as Catalogue
 from eomgen.documents.latex import PREAMBLE as PREAMBLE
+
+# One notation for the symbols of the whole document
+from eomgen.documents.latex import DocumentSetter as DocumentSetter
 from eomgen.documents.latex import Group as Group
 
 # The formulas in aligned blocks of a few rows each
@@ -123,8 +126,6 @@ from eomgen.documents.latex import latex_blocks as latex_blocks
 
 # One piece of a sentence, formulas between dollars
 from eomgen.documents.latex import piece_latex as piece_latex
-
-# One notation for the symbols of the whole document
 from eomgen.documents.latex import setter_of as setter_of
 
 # One side of a formula

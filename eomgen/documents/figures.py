@@ -9,6 +9,7 @@ import io
 import math
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ import numpy as np
 
 from eomgen import files
 from eomgen.documents.document import notation_of
+from eomgen.documents.languages import OURS, Catalogue
 from eomgen.errors import RunFailed, UsageError, visible
 from eomgen.frozen import dataclass
 from eomgen.model import OUTPUT, Unit
@@ -49,11 +51,17 @@ class Picture:
         size: width and height [inches].
         fill: puts panels into the matplotlib figure.
         title: above the picture, the model's name.
+        language: of the words in it.
     """
 
     size: tuple[float, float]
     fill: Callable[[Any], None]
     title: str = ""
+    language: Catalogue = OURS
+
+    def said_in(self, language: Catalogue) -> Picture:
+        """The picture with its words and the numbers of its axes in another language."""
+        return replace(self, language=language)
 
     def save(self, path: str | Path) -> None:
         """Draw it into a PNG, SVG or PDF file; the ending says which.
@@ -93,6 +101,8 @@ class Picture:
             figure = Figure(figsize=self.size, layout="constrained")
             FigureCanvasAgg(figure)
             self.fill(figure)
+            if self.language is not OURS:
+                _say_in(self.language, figure)
             if self.title:
                 title = visible(self.title).replace("$", r"\$")
                 figure.suptitle(title, fontsize=12, fontweight="bold", x=0.01, ha="left", wrap=True)
@@ -113,6 +123,18 @@ class Picture:
         page = io.BytesIO()
         self._drawn(lambda figure: figure.savefig(page, format="png", dpi=100))
         return page.getvalue()
+
+
+def _say_in(language: Catalogue, figure: Any) -> None:
+    """Put the words of a figure into a language, and decimal commas behind its digits where it has them."""
+    from matplotlib.text import Text
+    from matplotlib.ticker import Formatter
+
+    for text in figure.findobj(Text):
+        text.set_text(language.say(text.get_text()))
+    for panel in figure.axes if language.comma else ():
+        for axis in (panel.xaxis, panel.yaxis):
+            axis.get_major_formatter().fix_minus = lambda number: Formatter.fix_minus(number).replace(".", ",")
 
 
 def mathtext(name: str, notation: Notation | None = None) -> str:

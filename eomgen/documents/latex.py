@@ -8,6 +8,7 @@ from dataclasses import replace
 from itertools import zip_longest
 
 from eomgen.documents.document import Document
+from eomgen.documents.languages import Catalogue
 from eomgen.documents.statements import (
     Cell,
     Code,
@@ -33,7 +34,7 @@ from eomgen.documents.statements import (
     prose,
 )
 from eomgen.symbolic.expression import Graph, Node, Scalar, order, parse
-from eomgen.symbolic.print import PAPER, Set, SetLine, Setter, latex_escaped
+from eomgen.symbolic.print import PAPER, Notation, Set, SetLine, Setter, latex_escaped
 
 name = "latex"
 
@@ -89,9 +90,22 @@ LETTERS = {
 """letter -> how it begins, its subscript opened"""
 
 
-def setter_of(document: Document) -> Setter:
+class DocumentSetter(Setter):
+    """Sets the formulas of a document, and knows the language of its words.
+
+    Args:
+        notation: typesetting of names.
+        language: that of what stands beside the formulas.
+    """
+
+    def __init__(self, notation: Notation, language: Catalogue) -> None:
+        super().__init__(notation)
+        self.language = language
+
+
+def setter_of(document: Document) -> DocumentSetter:
     """One notation for the symbols of the whole document."""
-    return Setter(document.notation.reported_apart(names_in(document)))
+    return DocumentSetter(document.notation.reported_apart(names_in(document)), document.language)
 
 
 def names_in(document: Document) -> tuple[str, ...]:

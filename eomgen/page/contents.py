@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import re
 import tempfile
 from collections.abc import Callable, Container, Mapping
 from dataclasses import replace
@@ -37,6 +38,7 @@ SECTIONS = {
     "downloads": "Downloads",
 }
 """Every section that there is, in the order of the page, with its title."""
+_TICK = re.compile(r"(?<=>)[^<>]+(?=</text>)")
 
 PLAYER = "motion-player"
 """The element of a page in which the motion is played."""
@@ -176,6 +178,7 @@ class ReportSection:
             replace(
                 each,
                 caption=language.say(each.caption),
+                marks=each.marks if each.fixed else Html(_TICK.sub(lambda x: language.number(x[0]), each.marks)),
                 legend=tuple(replace(curve, name=language.prose(curve.name)) for curve in each.legend),
             )
             for each in self.drawings

@@ -19,6 +19,7 @@ import numpy as np
 
 from eomgen.documents import (
     KINDS,
+    Catalogue,
     Code,
     Picture,
     Piece,
@@ -57,12 +58,17 @@ _HALO = re.compile(
 """A letter with its white edge, and the same letter again."""
 
 
-def rest_figure(model: Model) -> ReportFigure:
-    """A model where it starts, with its coordinates and lengths."""
+def rest_figure(model: Model, language: Catalogue) -> ReportFigure:
+    """A model where it starts, with its coordinates and lengths.
+
+    Args:
+        language: of the words in it.
+    """
     missing = missing_values(model)
     assumed = f"; drawn with {', '.join(missing)} = 1" if missing else ""
     where = "at the start" if model.coordinates else "as it stands"
-    return figure_of(replace(rest_picture(model), title=""), "figure", f"{model.name} {where}{assumed}.")
+    picture = replace(rest_picture(model), title="", language=language)
+    return figure_of(picture, "figure", f"{model.name} {where}{assumed}.")
 
 
 def figure_of(picture: Picture, key: str, caption: str) -> ReportFigure:

@@ -8,9 +8,11 @@ from html import unescape
 from itertools import chain, zip_longest
 
 from eomgen.documents import (
+    Catalogue,
     Cell,
     Code,
     Document,
+    DocumentSetter,
     Formula,
     Grid,
     Group,
@@ -45,7 +47,7 @@ from eomgen.page.markup import (
 )
 from eomgen.page.packing import table_bytes, with_far_copies
 from eomgen.proof import SIGNS, Certificate
-from eomgen.symbolic.print import PAPER, PHONE, Setter
+from eomgen.symbolic.print import PAPER, PHONE
 from eomgen.version import __version__
 
 BEGIN, END = "\\begin{aligned}\n", "\n\\end{aligned}"
@@ -65,7 +67,7 @@ MINUS = "\N{MINUS SIGN}"
 
 def html_page(report: Report) -> str:
     """The report as a page."""
-    setter = setter_of(report.as_document)
+    setter, language = setter_of(report.as_document), report.head.language
     title = report.head.title
     sections = [element_of(setter, section, report) for section in report.sections]
     shown, apart = _set_apart(element("main", *sections))
@@ -84,7 +86,12 @@ def html_page(report: Report) -> str:
         element("title", title),
         style(page_style()),
     )
-    page = element("html", element("head", *head), element("body", *body), lang=report.head.language.language)
+    page = element(
+        "html",
+        element("head", *head),
+        element("body", *body, data_copied=language.say("copied")),
+        lang=language.language,
+    )
     return f"<!doctype html>\n{page}\n"
 
 
@@ -138,29 +145,29 @@ def _made(report: Report) -> list[str]:
     return [say(f"Made by eomgen {__version__}{origin}."), " ", say("This page needs no network.")]
 
 
-def element_of(setter: Setter, section: ReportSection, report: Report) -> Html:
+def element_of(setter: DocumentSetter, section: ReportSection, report: Report) -> Html:
     """A section of the page."""
     inside: list[Html] = [element("h2", section.title)]
     inside += [element("p", section.remark, class_="remark")] if section.remark else []
     for step in section.steps:
         inside += step_html(setter, step, titled=step.title != section.title)
     inside += [drawing_html(setter, drawing) for drawing in section.drawings]
-    inside += [_live(section.live)] if section.live else []
+    inside += [_live(section.live, report.head.language)] if section.live else []
     inside += [_attachments(section.attachments, _computed(report))] if section.attachments else []
     if section.key == "certificate" and report.certificate is not None:
         inside.append(_certificate(report.certificate, report.head.language.say))
     return element("section", *inside, id=section.key)
 
 
-def _live(live: Callable[[], Html]) -> Html:
+def _live(live: Callable[[], Html], language: Catalogue) -> Html:
     """Player of a motion; or a remark that says what to install for it."""
     try:
         return live()
     except ToolMissing as error:
-        return element("p", f"Not here: {error.what}; {error.fix}.", class_="remark")
+        return element("p", language.say(f"Not here: {error.what}; {error.fix}."), class_="remark")
 
 
-def step_html(setter: Setter, step: Step, *, titled: bool = True) -> list[Html]:
+def step_html(setter: DocumentSetter, step: Step, *, titled: bool = True) -> list[Html]:
     """A step of a derivation, its title above it."""
     heading = [element("h3", step.title)] if step.title and titled else []
     room = [element("div", class_="room", style=f"height: {step.room}cm")] if step.room else []
@@ -174,32 +181,33 @@ def document_html(document: Document, wanted: Callable[[Step], bool] = lambda st
     return in_a_row(*(part for step in document.steps if wanted(step) for part in step_html(setter, step)))
 
 
-def _group(setter: Setter, group: Group) -> Html:
+def _group(setter: DocumentSetter, group: Group) -> Html:
     if isinstance(group, list):
         return _formulas(setter, group)
     if isinstance(group, Prose):
         return element("p", *(piece_html(setter, piece) for piece in group.pieces))
     if isinstance(group, Lines):
-        return _scrolled(element("pre", "\n".join(group.lines)), "text")
+        return _scrolled(element("pre", "\n".join(group.lines)), setter.language.say("text"))
     return _table(setter, group if isinstance(group, Grid) else group.grid)
 
 
-def _formulas(setter: Setter, formulas: Sequence[Formula]) -> Html:
+def _formulas(setter: DocumentSetter, formulas: Sequence[Formula]) -> Html:
     """Formulas below one another, which can be copied as LaTeX and as text of the grammar.
 
     Where a narrow page needs other lines they stand there twice: the style sheet shows those that fit.
     """
     wide, narrow = (display_blocks(setter, formulas, line) for line in (PAPER, PHONE))
     text = "\n".join(map(formula_text, formulas))
+    say = setter.language.say
     buttons = (
-        element("button", "LaTeX", type="button", data_copy="", aria_label="Copy as LaTeX"),
-        element("button", "text", type="button", data_copy=text, aria_label="Copy as text"),
+        element("button", "LaTeX", type="button", data_copy="", aria_label=say("Copy as LaTeX")),
+        element("button", say("text"), type="button", data_copy=text, aria_label=say("Copy as text")),
     )
     shown = in_a_row(*(mathml(block, display=True) for block in wide))
     if wide != narrow or any(map(_fit, narrow)):
         fitted = (element("div", mathml(block, display=True), style=_fit(block)) for block in narrow)
         shown = in_a_row(element("div", shown, class_="wide"), element("div", *fitted, class_="narrow"))
-    shown = _scrolled(shown, "formula")
+    shown = _scrolled(shown, say("formula"))
     return element("div", shown, element("span", *buttons, class_="copy"), class_="formula")
 
 
@@ -217,7 +225,7 @@ def _scrolled(inside: Html, what: str) -> Html:
     return element("div", inside, class_="scroll", tabindex="0", role="group", aria_label=what)
 
 
-def piece_html(setter: Setter, piece: Piece) -> Html:
+def piece_html(setter: DocumentSetter, piece: Piece) -> Html:
     """One piece of a sentence."""
     if isinstance(piece, str):
         return html(piece)
@@ -228,7 +236,7 @@ def piece_html(setter: Setter, piece: Piece) -> Html:
     return Html(mathml(tex).replace("<math", f'<math style="{fit}"', 1)) if fit else mathml(tex)
 
 
-def _table(setter: Setter, grid: Grid) -> Html:
+def _table(setter: DocumentSetter, grid: Grid) -> Html:
     units = [key_of(head) == "unit" for head in grid.head]
     numbers = [
         bool(grid.rows)
@@ -246,10 +254,10 @@ def _table(setter: Setter, grid: Grid) -> Html:
         )
         for row in grid.rows
     ]
-    return _scrolled(element("table", element("thead", head), element("tbody", *rows)), "table")
+    return _scrolled(element("table", element("thead", head), element("tbody", *rows)), setter.language.say("table"))
 
 
-def _cell(setter: Setter, cell: Cell, is_unit: bool) -> Html:
+def _cell(setter: DocumentSetter, cell: Cell, is_unit: bool) -> Html:
     if not isinstance(cell, str):
         return mathml(side_latex(setter, cell))
     return unit_html(cell) if is_unit else number_html(cell)
@@ -276,7 +284,7 @@ def number_html(text: str) -> Html:
     return in_a_row(MINUS if sign else "", digits, *scale)
 
 
-def drawing_html(setter: Setter, drawing: ReportFigure) -> Html:
+def drawing_html(setter: DocumentSetter, drawing: ReportFigure) -> Html:
     """A picture with its legend, in the colours of the page."""
     legend = [
         element(

@@ -28,7 +28,7 @@ for (const button of document.querySelectorAll("button[data-copy], button[data-c
       area.remove();
     }
     const word = button.textContent;
-    button.textContent = "copied";
+    button.textContent = document.body.dataset.copied;
     setTimeout(() => { button.textContent = word; }, 1000);
   });
 }

@@ -7,7 +7,7 @@ import html
 import json
 import re
 from base64 import b64decode
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 from functools import cached_property, partial
 from importlib import resources
@@ -16,7 +16,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from eomgen.codegen import TestVector, compiled, javascript_expression, vectors
-from eomgen.documents import notation_of
+from eomgen.documents import Catalogue, language_of, notation_of
 from eomgen.errors import ToolMissing, UsageError, visible
 from eomgen.frozen import dataclass
 from eomgen.model import Model, Unit
@@ -62,6 +62,7 @@ class PlayerOptions:
         trail: a point that leaves a trail from the start, "" for none.
         forces: arrows are shown from the start.
         speed: of the time.
+        language: of the words in the page; "": that of the model.
     """
 
     sliders: Mapping[str, SliderRange | None] = field(default_factory=dict)
@@ -69,6 +70,7 @@ class PlayerOptions:
     trail: str = ""
     forces: bool = False
     speed: float = 1.0
+    language: str = ""
 
 
 @dataclass(frozen=True)
@@ -138,6 +140,11 @@ class PlayedRun:
     def moves(self) -> bool:
         """True if the model lives in the page."""
         return self.options.moves and not self.rests
+
+    @property
+    def language(self) -> str:
+        """Language of the words in the page; "" for that of the model."""
+        return self.options.language
 
     def reported(self) -> dict[str, Any]:
         """Data of the player in the page, as JSON."""
@@ -302,13 +309,23 @@ def rows_reported(rows: np.ndarray, digits: int = STATES) -> dict[str, Any]:
 # PlayedRun -> its player as parts of a page, and as a page of its own, which loads nothing from elsewhere.
 
 
-SCRIPTS = ("columns.mjs", "integrator.mjs", "ties.mjs", "motion.mjs", "plane.mjs", "space.mjs", "player.mjs")
+SCRIPTS = (
+    "words.mjs",
+    "columns.mjs",
+    "integrator.mjs",
+    "ties.mjs",
+    "motion.mjs",
+    "plane.mjs",
+    "space.mjs",
+    "player.mjs",
+)
 IN_SPACE = "space.mjs"
 _LAID_OUT = re.compile(r"\n +")
+SAID = re.compile(r'\bsay\("((?:[^"\\]|\\.)*)"')  # sentences of the scripts
 
 _PAGE = """\
 <!doctype html>
-<html lang="en">
+<html lang="{language}">
 <head>
 <meta charset="utf-8">
 <meta name="viewport" content="width=device-width, initial-scale=1">
@@ -319,7 +336,7 @@ _PAGE = """\
 {style}</style>
 </head>
 <body>
-<header><h1>{title}</h1><button type="button" id="theme">light or dark</button></header>
+<header><h1>{title}</h1><button type="button" id="theme">{theme}</button></header>
 <main>{body}</main>
 {script}
 <script>
@@ -367,10 +384,13 @@ class Playable(Protocol):
     Attributes:
         live: the model as the page evaluates it, or None: the computed run is played.
         moves: the model lives in the page.
+        language: of its words; "": that of the model.
     """
 
     @property
     def model(self) -> Model: ...
+    @property
+    def language(self) -> str: ...
     @property
     def live(self) -> Live | None: ...
     @property
@@ -385,11 +405,14 @@ def player_page(run: Trajectory, options: PlayerOptions | None = None) -> str:
 
 def player_page_of(played: Playable) -> str:
     """A player as a page."""
+    words = language_of(played.model, played.language)
     parts = player_parts_of(played, "player", page=True)
     return _PAGE.format(
         version=__version__,
+        language=words.language,
+        theme=html.escape(words.say("light or dark")),
         title=html.escape(visible(played.model.name)),
-        style=_asset("colours.css") + _asset("page.css") + parts.style,
+        style=asset("colours.css") + asset("page.css") + parts.style,
         body=parts.body,
         script=parts.script,
     )
@@ -398,20 +421,37 @@ def player_page_of(played: Playable) -> str:
 def player_parts_of(played: Playable, identity: str, *, page: bool = False) -> PlayerParts:
     """A player, to be put into a page, or alone in one."""
     library = {} if played.model.space == "plane" else {"three": three_js()}
-    reported = json.dumps({**played.reported(), **library, "page": page}, separators=(",", ":"), allow_nan=False)
+    scripts = {name: asset(name) for name in SCRIPTS if library or name != IN_SPACE}
+    said = _in_language(played.reported(), language_of(played.model, played.language), scripts.values())
+    reported = json.dumps({**said, **library, "page": page}, separators=(",", ":"), allow_nan=False)
     for letter in "<>&\u2028\u2029":
         reported = reported.replace(letter, f"\\u{ord(letter):04x}")
     live = played.live
     needed = () if live is None else live.programs if played.moves else ("begin", "rate", "frame")
     programs = ",\n".join(f"{name}: {javascript_expression(live.programs[name])}" for name in needed) if live else ""
     programs = _LAID_OUT.sub("\n", programs)
-    text = "\n".join(in_a_script(_asset(name)) for name in SCRIPTS if library or name != IN_SPACE)
+    text = "\n".join(map(in_a_script, scripts.values()))
     begin = f'begun(document.getElementById("{identity}"), {reported}, {{{programs}}});'
     body = f'<div class="eomgen-player" id="{identity}"></div>'
     whole = f"(() => {{\n{_harmless(text)}\n{begin}\n}})();"
     if not page:
         whole = _UNPACKED.format(packed=packed(whole.encode()), identity=identity)
-    return PlayerParts(_asset("player.css"), body, f"<script>\n{whole}\n</script>")
+    return PlayerParts(asset("player.css"), body, f"<script>\n{whole}\n</script>")
+
+
+def _in_language(reported: dict[str, Any], language: Catalogue, scripts: Iterable[str]) -> dict[str, Any]:
+    """Data of a player with its words in a language, and those words that its scripts say by themselves."""
+    sentences = (sentence for script in scripts for sentence in SAID.findall(script))
+    said = {text: language.say(text) for text in dict.fromkeys(sentences)}
+    found = reported | {"words": {text: words for text, words in said.items() if words != text}}
+    found |= {"comma": language.comma, "rests": language.say(reported["rests"])}
+    if run := reported["run"]:
+        found["run"] = run | {"message": language.say(run["message"])}
+    if live := reported["live"]:
+        found["live"] = live | {"edges": list(map(language.say, live["edges"]))}
+    if "captions" in reported:
+        found["captions"] = [[from_, language.say(words)] for from_, words in reported["captions"]]
+    return found
 
 
 def three_js() -> str:
@@ -428,7 +468,7 @@ def three_js() -> str:
     return packed(folder.joinpath("static", "r130", "three.min.js").read_bytes())
 
 
-def _asset(name: str) -> str:
+def asset(name: str) -> str:
     """A file of the player."""
     return resources.files("eomgen.page").joinpath("player", name).read_text(encoding="utf-8")
 
@@ -537,7 +577,7 @@ def _otherwise_moved(played: PlayedRun, reported: Mapping[str, Any]) -> str:
     model, requested = played.model, played.options.moves
     paths = [name for name in played.phase.configuration.pieces if model.bodies[name].path_pieces]
     could = bool(model.contacts or paths)  # the model of a phase has the one piece on which a body is
-    if requested and "contacts" in reported["rests"] and not could:
+    if requested and reported["rests"] and not (could or played.run.carried):
         return "it says that contacts change, and none is declared"
     alone = len(played.run.phases) == 1
     return "" if alone or not reported["moves"] else "it moves by itself, and the run has several phases"
@@ -596,9 +636,11 @@ class PlayedDisplacements:
 
     Args:
         found: one or several.
+        language: of the words beside them; "": that of the model.
     """
 
     found: tuple[VirtualDisplacement, ...]
+    language: str = ""
     live: None = None
     moves: bool = False
 

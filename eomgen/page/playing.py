@@ -14,7 +14,7 @@ import numpy as np
 
 from eomgen import files, pipeline
 from eomgen.codegen import TestVector, compiled
-from eomgen.documents import Document, Lines, plain_document, proven, with_start_reported
+from eomgen.documents import Document, Lines, language_of, plain_document, proven, with_start_reported
 from eomgen.errors import ExpressionError, RunFailed, ToolMissing, UsageError
 from eomgen.frozen import dataclass
 from eomgen.model import Model, ModelOrPath, Taken, Typed, TypedNumbers, Values, seconds
@@ -106,6 +106,7 @@ def play(
     trail: str = "",
     forces: bool = False,
     speed: float = 1.0,
+    language: str = "",
 ) -> Played:
     """The model alive in a page: sliders, bodies that one can take, plots; no network is needed.
 
@@ -117,12 +118,13 @@ def play(
         trail: a point that leaves a trail from the start.
         forces: arrows of forces are shown from the start.
         speed: of the time.
+        language: of the words in the page: "de", or a file .po; "": that of the model.
     Raises:
-        UsageError: nothing moves; a slider of an unknown name.
+        UsageError: nothing moves; a slider of an unknown name; there are no words in that language.
     """
     model = model_to_study(model, parameters, start)
     ranges, _ = slider_ranges(model, sliders, declared=False)
-    options = PlayerOptions(ranges, True, trail, forces, speed)
+    options = PlayerOptions(ranges, True, trail, forces, speed, language)
     found = played(model, None if time is None else seconds(time), options)
     if path is not None:
         found.write(path)
@@ -138,6 +140,7 @@ def played(model: Model, time: float | None, options: PlayerOptions) -> Played:
         raise UsageError(f"a speed of {options.speed:g} makes no sense", fix="1 is as fast as it moves")
     found, shorter = run_of_a_page(pipeline.derive(model), time, SAMPLES)
     made = Played(PlayedRun(found, options), shorter)
+    language_of(model, options.language)
     points = [point["name"] for point in made.played.drawn[0]["points"]]
     if options.trail and options.trail not in points:
         raise UsageError(f"there is no point '{options.trail}'", fix=f"there are {', '.join(points)}")
@@ -195,11 +198,12 @@ def play_document(
     trail: str,
     forces: bool,
     speed: float,
+    language: str = "",
     certify: bool = True,
 ) -> Document:
     """Writes the page; the document describes its content."""
     ranges, taken = slider_ranges(model, sliders)
-    options = PlayerOptions(ranges, True, trail, forces, speed)
+    options = PlayerOptions(ranges, True, trail, forces, speed, language)
     found = played(model, time, options)
     found.write(output)
 

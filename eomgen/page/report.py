@@ -15,6 +15,7 @@ from eomgen import files, pipeline
 from eomgen.codegen import identifier
 from eomgen.documents import (
     SECTION_GROUPS,
+    Catalogue,
     Document,
     Lines,
     Result,
@@ -129,6 +130,15 @@ class Subject:
     origin: str
     source: str
     sheet: Sheet = Sheet()
+
+    @cached_property
+    def language(self) -> Catalogue:
+        """Words of the language that is requested, else of that of the model.
+
+        Raises:
+            UsageError: there are no words in that language.
+        """
+        return language_of(self.model, self.sheet.language)
 
     @property
     def stem(self) -> str:
@@ -414,8 +424,7 @@ def in_language(report: Report, subject: Subject) -> Report:
     Raises:
         UsageError: there are no words in that language.
     """
-    model = subject.model
-    language = language_of(model, subject.sheet.language)
+    model, language = subject.model, subject.language
     if not language.messages:
         return report
     kept = ("statement", *(f"question_{k}" for k in range(1, len(model.questions or ()) + 1)))
@@ -532,7 +541,7 @@ def _pictures(subject: Subject, key: str) -> tuple[ReportFigure, ...]:
         picture = subject.found[key].picture
     except (UsageError, RunFailed):
         return ()
-    return (figure_of(replace(picture, title=""), key, CAPTIONS[key]),)
+    return (figure_of(replace(picture, title="", language=subject.language), key, CAPTIONS[key]),)
 
 
 def _reactions(subject: Subject) -> ReportSection | None:
@@ -543,7 +552,7 @@ def _reactions(subject: Subject) -> ReportSection | None:
 def _free_bodies(subject: Subject) -> ReportSection | None:
     """Each body cut free, as a picture and as a table of its forces."""
     steps = subject.document("free_bodies").steps
-    picture = replace(subject.found["free_bodies"].picture, title="")
+    picture = replace(subject.found["free_bodies"].picture, title="", language=subject.language)
     caption = "Each body cut free; an arrow points where its letter is positive."
     return ReportSection("free_bodies", steps, (figure_of(picture, "free_bodies", caption),))
 
@@ -562,20 +571,20 @@ def _plots(subject: Subject) -> ReportSection | None:
 
 
 def _figure(subject: Subject) -> ReportSection | None:
-    return ReportSection("figure", drawings=(rest_figure(subject.model),))
+    return ReportSection("figure", drawings=(rest_figure(subject.model, subject.language),))
 
 
 def _motion(subject: Subject) -> ReportSection | None:
     """The motion as a player; of a structure the virtual displacements that give its reactions."""
     if subject.main[0] == "statics":
-        return _released(subject.found["statics"])
+        return _released(subject.found["statics"], subject.sheet.language)
     if subject.main[0] != "derivation":
         return None
-    played = PlayedRun(subject.run, PlayerOptions())
+    played = PlayedRun(subject.run, PlayerOptions(language=subject.sheet.language))
     return replace(_played(played), computed=played.computed)
 
 
-def _released(found: Result) -> ReportSection | None:
+def _released(found: Result, language: str) -> ReportSection | None:
     """One released reaction after the other; of a system that finds its rest nothing."""
     if not isinstance(found, Statics):
         return None
@@ -583,7 +592,7 @@ def _released(found: Result) -> ReportSection | None:
     moved = [r for r in reactions if r.work is not None and r.work.plan.moving]
     if not moved:
         return None
-    shown = PlayedDisplacements(tuple(VirtualDisplacement(structure, r) for r in moved[:MOST_RELEASED]))
+    shown = PlayedDisplacements(tuple(VirtualDisplacement(structure, r) for r in moved[:MOST_RELEASED]), language)
     left = [r.name for r in moved[MOST_RELEASED:]]
     more = f"Not shown: {', '.join(left)}; `eomgen animate --virtual` shows each." if left else ""
     return _played(shown, f"The virtual displacement of each released reaction, to the first order. {more}".strip())
@@ -595,7 +604,7 @@ def _played(played: Playable, words: str = "") -> ReportSection:
     @cache
     def live() -> Html:
         parts = player_parts_of(played, PLAYER)
-        above = [element("p", words)] if words else []
+        above = [element("p", language_of(played.model, played.language).say(words))] if words else []
         return in_a_row(*above, Html(f"<style>{parts.style}</style>{parts.body}{parts.script}"))
 
     return ReportSection("motion", live=live)

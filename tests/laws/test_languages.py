@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 from each import each
+from matplotlib.text import Text
 from slow_run import ALL
 
 import eomgen
@@ -18,6 +19,7 @@ from eomgen.documents.document import own_words
 from eomgen.documents.languages import PLACE, Catalogue, catalogue, languages, read_catalogue
 from eomgen.documents.statements import Formula, Grid, Lines, Prose, Step, Table
 from eomgen.documents.text import formula_text
+from eomgen.page.player import SAID, SCRIPTS, asset, player_reported
 from eomgen.page.report import report
 from eomgen.symbolic.expression import Graph
 
@@ -143,3 +145,21 @@ def test_formulas_stand_in_the_order_of_the_language():
     assert said.pieces == ("Für ", a, ", geteilt durch ", b, ":")
     turned = Catalogue("xx", {"For {1}, divided by {2}:": "{2} divides, for {1}:"})
     assert turned.prose(Prose(("For ", a, ", divided by ", b, ":"))).pieces == (b, " divides, for ", a, ":")
+
+
+def test_the_page_of_a_motion_speaks_the_language():
+    """Every sentence of its scripts is known to the catalogues."""
+    sentences = {text for name in SCRIPTS for text in SAID.findall(asset(name))}
+    assert len(sentences) > 20 and not sentences - catalogue("de").messages.keys()
+    page = eomgen.play(MODELS / "cart_pole.toml", time=0.2, language="de").html
+    told = player_reported(page)
+    assert told["comma"] and told["words"]["Play"] == "Abspielen" and 'lang="de"' in page and "hell oder dunkel" in page
+    assert sentences - told["words"].keys() <= {"Pause"}  # the same word in both
+
+
+def test_pictures_speak_the_language():
+    """Words that matplotlib draws, and the numbers of its axes."""
+    picture = eomgen.statics(MODELS / "fink_truss.toml").picture.said_in(catalogue("de"))
+    texts: list[str] = []
+    picture._drawn(lambda figure: texts.extend(text.get_text() for text in figure.findobj(Text)))
+    assert any("Zug blau" in text for text in texts) and not any(re.search(r"\d\.\d", text) for text in texts)

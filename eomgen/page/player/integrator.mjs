@@ -3,6 +3,8 @@
 // The method of Dormand and Prince of order 5 with its dense output of order 4.
 // Source: Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I, 2nd ed., II.4 and II.6.
 
+import { say } from "./words.mjs";
+
 const C = [0, 1/5, 3/10, 4/5, 8/9, 1, 1];
 const A = [
     [],
@@ -92,14 +94,14 @@ export function integrated(rate, x0, end, { rtol, atol, kept = () => false, stop
     run.t.push(t);
     run.message = stopped(t, x, run);
     rate(t, x, k[0]);
-    if (!finite(k[0])) run.message = "The motion has no finite value where it starts.";
+    if (!finite(k[0])) run.message = say("The motion has no finite value where it starts.");
     if (run.message || !n) { if (!n) run.t.push(end); return run; }
     let h = firstStep(rate, x, k, y, end, rtol, atol), grows = LARGEST;
     while (t < end) {
         const stop = Math.min(end, ...breaks.filter(b => b > t + 1e-12*Math.max(1, t)));
         const least = 10*Number.EPSILON*Math.max(t, Number.MIN_VALUE);
-        if (!(h >= least)) { run.message = `The step went to zero at t = ${t.toPrecision(6)} s.`; break; }
-        if (run.steps === most) { run.message = `Gave up after ${most} steps at t = ${t.toPrecision(6)} s.`; break; }
+        if (!(h >= least)) { run.message = say("The step went to zero at t = {1} s.", t.toPrecision(6)); break; }
+        if (run.steps === most) { run.message = say("Gave up after {1} steps at t = {2} s.", most, t.toPrecision(6)); break; }
         const last = t + h*1.0000001 >= stop, step = last ? stop - t : h;
         for (let stage = 1; stage < 7; stage++) {
             const a = A[stage];

@@ -2,6 +2,7 @@
 
 import { Run, integrated } from "./integrator.mjs";
 import { STALLS, Ties, dot, leastChange, solved, weighted } from "./ties.mjs";
+import { say } from "./words.mjs";
 
 const OF_A_STEP = 0.1;  // of the tolerances of a run: errors of many steps add up
 const INDEPENDENT = 1e-6;  // squared sine of a row's angle to those before it: more, and it counts
@@ -59,7 +60,7 @@ export class Motion {
         }
         if (this.start.open(0, x)[1] > STALLS) this._nearestSpeeds(x, given);
         const rate = this.start.open(0, x)[1];
-        return { x, why: rate <= 1e-6 ? "" : "No start speeds near the ones given agree with the ties." };
+        return { x, why: rate <= 1e-6 ? "" : say("No start speeds near the ones given satisfy the constraints.") };
     }
 
     /** The run from that start; its message says where it ended early. */
@@ -71,7 +72,7 @@ export class Motion {
         let lost = "";
         const kept = (t, y) => {
             const moved = this.ties.kept(t, y, allowed);
-            if (moved && !lost && this.ties.open(t, y)[0] > 100*atol) lost = `From t = ${t.toPrecision(6)} s on the ties stay open.`;
+            if (moved && !lost && this.ties.open(t, y)[0] > 100*atol) lost = say("From t = {1} s on the constraints stay violated.", t.toPrecision(6));
             return moved;
         };
         const sizes = [], pivots = this.ties.pivots(0, first, sizes), rank = pivots.filter(v => v > INDEPENDENT).length;
@@ -82,7 +83,7 @@ export class Motion {
             const begun = run.t[run.t.length - 2];
             const within = Array.from({ length: LOOKS }, (_, k) => begun + (t - begun)*(k + 1)/LOOKS);
             singular = within.some(s => this.ties.pivots(s, run.at(s), sizes)[rank - 1] < least);
-            return singular ? `Stopped at t = ${begun.toPrecision(6)} s: before a singular position, which this page does not cross.` : "";
+            return singular ? say("Stopped at t = {1} s: before a singular position, which this page does not cross.", begun.toPrecision(6)) : "";
         };
         const found = integrated(this.of.rate, first, time, {
             rtol: Math.max(OF_A_STEP*rtol, 1e-13), atol: allowed, kept, breaks: this.told.breaks,
@@ -114,14 +115,14 @@ export class Motion {
     _stopped(t, x) {
         if (!this.of.edges) return "";
         const k = this.of.edges(t, x).findIndex(left => left < 0);
-        return k < 0 ? "" : `Stopped at t = ${t.toPrecision(6)} s: ${this.told.edges[k]}, and how it goes on is not determined.`;
+        return k < 0 ? "" : say("Stopped at t = {1} s: {2}, and how it goes on is not determined.", t.toPrecision(6), this.told.edges[k]);
     }
 
     _open(x) {
         const found = this.start.values(0, x, this.start.found), open = [];
         this.told.gapTies.forEach((name, k) => { if (!(Math.abs(found[k]) <= STALLS) && !open.includes(name)) open.push(name); });
         const names = open.map(name => `'${name}'`).join(", ");
-        return `With these values ${names || "the loop"} cannot be closed: no place of the bodies fits.`;
+        return names ? say("With these values {1} cannot be closed: no place of the bodies fits.", names) : say("With these values the loop cannot be closed: no place of the bodies fits.");
     }
 
     _weights(columns, sizes = null) {

@@ -5,6 +5,7 @@ import { Motion } from "./motion.mjs";
 import { PlaneView, inGround } from "./plane.mjs";
 import { SpaceView } from "./space.mjs";
 import { solved } from "./ties.mjs";
+import { decimal, say, speak } from "./words.mjs";
 
 const FRAMES_TO_FIT = 60;
 const POINTS = 400;  // of a curve
@@ -13,6 +14,7 @@ const NEAR = 1e-6;  // of a state against the recorded one
 const DIGITS = "\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079";
 const written = unit => unit.replaceAll("*", "\u00b7").replace(/\^(-?)(\d)/g, (_, sign, digit) => (sign && "\u207b") + DIGITS[digit]);
 const rounded = v => v === 0 ? "0" : Number.isFinite(v) ? String(+v.toPrecision(5)) : "none";
+const shown = v => (Number.isFinite(v) ? decimal(rounded(v)) : say("none"));
 
 /** <name ...attributes>children</name> */
 function made(name, attributes = {}, ...children) {
@@ -135,8 +137,9 @@ export class Player {
             this.view.trailed([...passed, this._point(frame)]);
         }
         this.scrub.value = this.t;
-        this.scrub.setAttribute("aria-valuetext", `${this.t.toFixed(2)} s`);
-        this.clock.textContent = `${this.t.toFixed(2)} s`;
+        const clock = decimal(`${this.t.toFixed(2)} s`);
+        this.scrub.setAttribute("aria-valuetext", clock);
+        this.clock.textContent = clock;
         const said = (this.told.captions ?? []).findLast(([from]) => from <= this.t)?.[1] ?? "";
         if (this.caption.textContent !== said) this.caption.textContent = said;
         for (const plot of this.plots) plot.cursor(this.t);
@@ -145,7 +148,7 @@ export class Player {
     /** A parameter or start value, SI; the motion from there. */
     set(name, value) {
         this._refuseUnlessLive();
-        if (![...this.told.live.parameters, ...this.told.live.coordinates, ...this.told.live.speeds].includes(name)) throw new RangeError(`there is no '${name}'`);
+        if (![...this.told.live.parameters, ...this.told.live.coordinates, ...this.told.live.speeds].includes(name)) throw new RangeError(say("there is no '{1}'", name));
         this.given[name] = value;
         this._rerun();
     }
@@ -157,7 +160,7 @@ export class Player {
         this._shown();
     }
 
-    _refuseUnlessLive() { if (!this.told.moves) throw new Error(this.told.rests || "this page plays a run as it was computed"); }
+    _refuseUnlessLive() { if (!this.told.moves) throw new Error(this.told.rests || say("this page plays a run as it was computed")); }
 
     _rerun() {
         const began = performance.now();
@@ -203,8 +206,9 @@ export class Player {
             drift = Math.max(drift, Math.abs(kinetic + potential - first));
             moves = Math.max(moves, kinetic, Math.abs(potential - V));
         }
-        const told = this.told.conservative && moves > 0 ? `, drift ${(drift/moves).toExponential(1)} of what moves` : "";
-        this.energy.textContent = `Energy ${rounded(first)} J at the start${told}.`;
+        this.energy.textContent = this.told.conservative && moves > 0
+            ? say("Energy {1} J at the start, drift {2} of what moves.", rounded(first), (drift/moves).toExponential(1))
+            : say("Energy {1} J at the start.", rounded(first));
     }
 
     _trail() {
@@ -227,14 +231,14 @@ export class Player {
         this.stage = space ? made("div", { class: "stage space" }) : document.createElementNS("http://www.w3.org/2000/svg", "svg");
         if (!space) this.stage.setAttribute("class", "stage");
         this.stage.setAttribute("role", "img");
-        this.stage.setAttribute("aria-label", `${told.name} in motion${space ? "; arrow keys turn it, plus and minus bring it nearer" : ""}`);
+        this.stage.setAttribute("aria-label", space ? say("{1} in motion; arrow keys turn it, plus and minus bring it nearer", told.name) : say("{1} in motion", told.name));
         this.view = space ? new SpaceView(this.stage, told.scene, told.three) : new PlaneView(this.stage, told.scene);
-        this.button = made("button", { type: "button", class: "play", "aria-label": "Play", onclick: () => this.play(!this.playing) }, "\u25b6");
-        this.scrub = made("input", { type: "range", id: id("time"), min: 0, max: this.run.end, step: "any", value: 0, "aria-label": "Time",
+        this.button = made("button", { type: "button", class: "play", "aria-label": say("Play"), onclick: () => this.play(!this.playing) }, "\u25b6");
+        this.scrub = made("input", { type: "range", id: id("time"), min: 0, max: this.run.end, step: "any", value: 0, "aria-label": say("Time"),
             oninput: () => { this.play(false); this.seek(+this.scrub.value); } });
-        this.clock = made("output", { for: id("time"), class: "clock" }, "0.00 s");
-        const speeds = made("select", { "aria-label": "Speed", onchange: event => { this.speed = +event.target.value; } },
-            ...[0.1, 0.25, 0.5, 1, 2, 4].map(v => made("option", { value: v, selected: v === (told.speed ?? 1) }, `${v} \u00d7`)));
+        this.clock = made("output", { for: id("time"), class: "clock" }, decimal("0.00 s"));
+        const speeds = made("select", { "aria-label": say("Speed"), onchange: event => { this.speed = +event.target.value; } },
+            ...[0.1, 0.25, 0.5, 1, 2, 4].map(v => made("option", { value: v, selected: v === (told.speed ?? 1) }, decimal(`${v} \u00d7`))));
         this.speed = told.speed ?? 1;
         const box = (text, name, on) => {
             const input = made("input", { type: "checkbox", onchange: event => { root.classList.toggle(name, event.target.checked); this.seek(this.t); } });
@@ -244,11 +248,11 @@ export class Player {
         };
         const roles = new Set(told.scene.marks.map(mark => mark.role));
         this.trailed = told.trail ?? "";
-        const trails = made("select", { "aria-label": "Trail", onchange: event => { this.trailed = event.target.value; this._trail(); this.seek(this.t); } },
-            made("option", { value: "" }, "no trail"), ...told.scene.points.filter(p => p.at.some(v => typeof v !== "number")).map(p => made("option", { value: p.name, selected: p.name === this.trailed }, `trail of ${p.name}`)));
+        const trails = made("select", { "aria-label": say("Trail"), onchange: event => { this.trailed = event.target.value; this._trail(); this.seek(this.t); } },
+            made("option", { value: "" }, say("no trail")), ...told.scene.points.filter(p => p.at.some(v => typeof v !== "number")).map(p => made("option", { value: p.name, selected: p.name === this.trailed }, say("trail of {1}", p.name))));
         const options = made("div", { class: "options" }, speeds, trails,
-            roles.has("force") || roles.has("reaction") ? box("forces", "forces", told.forces ?? false) : null,
-            told.scene.marks.some(mark => mark.kind === "label") ? box("names", "names", false) : null);
+            roles.has("force") || roles.has("reaction") ? box(say("forces"), "forces", told.forces ?? false) : null,
+            told.scene.marks.some(mark => mark.kind === "label") ? box(say("names"), "names", false) : null);
         this.note = made("p", { class: "note", role: "status", hidden: true });
         this.energy = made("p", { class: "energy" });
         this.caption = made("p", { class: "caption", hidden: !told.captions });
@@ -268,7 +272,7 @@ export class Player {
     play(on) {
         this.playing = on;
         this.button.textContent = on ? "\u275a\u275a" : "\u25b6";
-        this.button.setAttribute("aria-label", on ? "Pause" : "Play");
+        this.button.setAttribute("aria-label", on ? say("Pause") : say("Play"));
         if (!on) return;
         if (this.t >= this.run.end) this.t = 0;
         let last = null;
@@ -289,25 +293,25 @@ export class Player {
         const told = this.told.sliders;
         if (!told.length && !this.told.rests) return null;
         const fields = told.map(each => {
+            const label = each.unit ? `${each.name} [${each.unit}]` : each.name;
             const input = name => made("input", { type: name, min: each.min/each.size, max: each.max/each.size, step: name === "range" ? (each.max - each.min)/each.size/400 : "any",
-                "aria-label": `${each.name}${each.unit ? ` in ${each.unit}` : ""}${name === "number" ? ", typed" : ""}`, disabled: !this.told.moves });
+                "aria-label": name === "number" ? say("{1}, typed", label) : label, disabled: !this.told.moves });
             const range = input("range"), typed = input("number");
             typed.removeAttribute("min"), typed.removeAttribute("max");
-            const shown = value => { range.value = value/each.size; typed.value = rounded(value/each.size); range.setAttribute("aria-valuetext", `${rounded(value/each.size)} ${each.unit}`); };
+            const typedIn = value => { range.value = value/each.size; typed.value = rounded(value/each.size); range.setAttribute("aria-valuetext", decimal(`${rounded(value/each.size)} ${each.unit}`)); };
             const changed = event => { const v = +event.target.value; if (event.target.value !== "" && Number.isFinite(v)) this._soon(each.name, v*each.size); };
             range.addEventListener("input", changed);
             range.addEventListener("change", () => this._fitted());
             typed.addEventListener("change", changed);
-            this.sliders.push({ told: each, shown });
-            shown(each.value);
+            this.sliders.push({ told: each, shown: typedIn });
+            typedIn(each.value);
             return made("div", { class: "slider", title: each.about || null }, made("span", { class: "name" }, sign(this.told, each.name)), range, typed, made("span", { class: "unit" }, written(each.unit)));
         });
         const rests = this.told.rests ? made("p", { class: "rests" }, this.told.rests) : null;
         if (!told.length) return rests;
         const buttons = made("div", { class: "options" },
-            made("button", { type: "button", onclick: () => { this.reset(); this._fitted(); this.seek(this.t); }, disabled: !this.told.moves }, "as in the file"));
-        const shown = made("details", { class: "sliders", open: true }, made("summary", {}, "Parameters and start"), rests, made("div", { class: "fields" }, ...fields), buttons);
-        return shown;
+            made("button", { type: "button", onclick: () => { this.reset(); this._fitted(); this.seek(this.t); }, disabled: !this.told.moves }, say("as in the file")));
+        return made("details", { class: "sliders", open: true }, made("summary", {}, say("Parameters and start")), rests, made("div", { class: "fields" }, ...fields), buttons);
     }
 
     /** The last of several changes before the next picture. */
@@ -334,7 +338,7 @@ export class Player {
             return made("label", {}, input, " ", sign(this.told, each.name));
         });
         draw();
-        return made("div", { class: "plotting" }, this.plotting, made("details", {}, made("summary", {}, "What is plotted"), made("div", { class: "options" }, ...boxes)));
+        return made("div", { class: "plotting" }, this.plotting, made("details", {}, made("summary", {}, say("What is plotted")), made("div", { class: "options" }, ...boxes)));
     }
 
     // -- a body, taken by hand ------------------------------------------------------------------------
@@ -474,20 +478,21 @@ class Plot {
         const y = v => 105 - 100*(v - low)/(high - low);
         this.curve.setAttribute("points", values.map((v, i) => Number.isFinite(v) ? `${(600*i/(POINTS - 1)).toFixed(1)},${y(v).toFixed(1)}` : "").join(" "));
         this.zero.setAttribute("y1", y(0)), this.zero.setAttribute("y2", y(0));
-        this.range.firstChild.textContent = rounded(high);
-        this.range.lastChild.textContent = rounded(low);
+        this.range.firstChild.textContent = shown(high);
+        this.range.lastChild.textContent = shown(low);
     }
 
     cursor(t) {
         const { player, told } = this, x = player.run.end > 0 ? 600*t/player.run.end : 0;
         this.line.setAttribute("x1", x), this.line.setAttribute("x2", x);
         const v = player.value(told.name, t)/told.size;
-        this.value.textContent = `= ${rounded(v)}`;
+        this.value.textContent = `= ${shown(v)}`;
     }
 }
 
 /** A player in the page. */
 export function begun(root, told, programs) {
+    speak(told);
     const player = root.player = new Player(root, told, programs);
     player.recalled();
     if (!told.page) return player;
@@ -503,6 +508,6 @@ export function begun(root, told, programs) {
     };
     const faults = player.faults();
     document.body.dataset.selfcheck = faults ? "failed" : "ok";
-    if (faults) root.prepend(made("p", { class: "wrong", role: "alert" }, `The numbers of this page are wrong: ${faults}.`));
+    if (faults) root.prepend(made("p", { class: "wrong", role: "alert" }, say("The numbers of this page are wrong: {1}.", faults)));
     return player;
 }
