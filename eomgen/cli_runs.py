@@ -101,6 +101,7 @@ VERB = partial(click.command, cls=Verb)
     help="What --plot draws: all over time, outputs, rates over coordinates, sizes of forces, forces of hinges.",
 )
 @UNITS(help='In the .csv "theta [deg]", as the file declares it, for names and SI.')
+@click.option("--symbols", is_flag=True, help=r'In the .csv the letters of formulas, "$\vartheta$", for names.')
 @SAMPLES(help="How many instants are given.  [default: 1001]")
 @click.option(
     "--target", metavar="NAME", help="Language that evaluates the equations, of codegen --list.  [default: the fastest]"
@@ -132,7 +133,7 @@ def simulate_command(
     if baumgarte and stabilize != "baumgarte":
         raise click.UsageError(f"--baumgarte goes with --stabilize baumgarte, not {stabilize}")
     in_table = output is not None and not output.lower().endswith(".npz")
-    refuse_idle(view=(options["plot"] is not None, OF_PLOT), units=(in_table, OF_TABLE))
+    refuse_idle(view=(options["plot"] is not None, OF_PLOT), units=(in_table, OF_TABLE), symbols=(in_table, OF_TABLE))
     if project_every and stabilize != "projection":
         raise click.UsageError(f"--project-every goes with --stabilize projection, not {stabilize}")
     rates = baumgarte or Stepping().rates

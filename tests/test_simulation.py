@@ -9,17 +9,20 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from each import each
 from hand_made import cart_pole, pendulum, symbols, tied_pendulum
 
 import eomgen
+from eomgen.cli import main
 from eomgen.codegen.program import program_of, right_hand_side
 from eomgen.codegen.rhs import compiled, parameter_vector
-from eomgen.documents.figures import mathtext, over_time
+from eomgen.documents.figures import heads_in_symbols, mathtext, over_time
 from eomgen.errors import UsageError, WriteFailed
 from eomgen.mechanics.dynamics import formulations as recursive
 from eomgen.model.quantities import Unit
 from eomgen.page.animation import Showing, animate_document
+from eomgen.proof.reported_run import ReportedRun, run_reported
 from eomgen.runs.single_run import page_time, run_of_a_page
 from eomgen.runs.single_run import run as run_equations
 from eomgen.simulation.integration import drift_of, integrate
@@ -441,6 +444,24 @@ def test_csv_holds_every_digit():
     assert head == ["t", "theta", "theta'", "energy"]
     numbers = np.array(rows, dtype=float)
     assert (numbers == np.column_stack([result.t, result.x, result.energy])).all()
+
+
+def test_a_table_of_a_run_has_the_letters_of_formulas(tmp_path):
+    """`simulate --symbols`: heads in LaTeX, which the proof reads back; a head in another's place is seen."""
+    path = MODELS / "conker.toml"
+    found = CliRunner().invoke(main, ["simulate", str(path), "-o", str(tmp_path / "a.csv"), "--symbols", "--time", "1"])
+    assert found.exit_code == 0, found.output
+    head = (tmp_path / "a.csv").read_text().splitlines()[0]
+    assert r"$\varphi$,$\dot{\varphi}$,energy" in head and "tension(thread)" in head
+    run = eomgen.simulate(path, time=1)
+    swapped = {"phi": r"$\dot{\varphi}$", "phi'": r"$\varphi$"}
+    for heads, right in ((heads_in_symbols(run), True), (swapped, False)):
+        page = io.StringIO()
+        run.to_csv(page, heads=heads)
+        first, *lines = csv.reader(io.StringIO(page.getvalue()))
+        rows = [(name, repr(float(x[0])), repr(float(x[-1]))) for name, x in run.columns().items()]
+        checks = run_reported(run, eomgen.load(path), ReportedRun(rows, table=(first, lines)))
+        assert all(check.status == "holds" for check in checks) == right
 
 
 def test_npz_holds_the_same(tmp_path):

@@ -54,8 +54,6 @@ from eomgen.documents.drawing_on_a_page import flat_drawing as flat_drawing
 
 # M a + c = Q + J^T lam, row by row
 from eomgen.documents.equation_steps import sides_of as sides_of
-
-# of lines of one colour
 from eomgen.documents.figures import KINDS as KINDS
 
 # Settings of matplotlib with which every picture is drawn
@@ -72,6 +70,9 @@ from eomgen.documents.figures import by_unit as by_unit
 
 # A number with four figures, without a power of ten where it has less than eight digits: 12340, 0.05
 from eomgen.documents.figures import four_figures as four_figures
+
+# of lines of one colour
+from eomgen.documents.figures import heads_in_symbols as heads_in_symbols
 
 # {reaction: (number of its colour, kind of its line)}: a colour an owner, a kind a component, no two alike
 from eomgen.documents.figures import kinds_of_lines as kinds_of_lines

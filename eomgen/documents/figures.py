@@ -20,7 +20,7 @@ from eomgen.documents.document import notation_of
 from eomgen.documents.languages import OURS, Catalogue
 from eomgen.errors import RunFailed, UsageError, visible
 from eomgen.frozen import dataclass
-from eomgen.model import OUTPUT, Unit
+from eomgen.model import OUTPUT, Model, Unit
 from eomgen.proof import DrawnPanel, panels_of
 from eomgen.simulation import Trajectory
 from eomgen.symbolic.numeric import tolerances
@@ -259,7 +259,7 @@ def outputs_over_time(trajectory: Trajectory, title: str, units: Mapping[str, Un
         panels = figure.subplots(len(groups), 1, sharex=True, squeeze=False)[:, 0]
         for panel, (unit, names) in zip(panels, groups.items(), strict=True):
             curves = {name: trajectory.outputs[name] / unit.size for name in names}
-            _curves(panel, trajectory.t, curves, unit, Notation())
+            _curves(panel, trajectory.t, curves, unit, notation_of_run(trajectory))
         panels[-1].set_xlabel("$t$ [s]")
         panels[-1].margins(x=0.01)
         figure.align_ylabels(panels)
@@ -268,9 +268,20 @@ def outputs_over_time(trajectory: Trajectory, title: str, units: Mapping[str, Un
 
 
 def notation_of_run(run: Trajectory) -> Notation:
-    """Notation that the model of a run declares; the default where the run has no model."""
+    """Notation that the model of a run declares, for its outputs too; the default where the run has no model."""
     known = run.phases[0].model if run.phases else None
-    return Notation() if known is None else notation_of(known.declared.scope.model)
+    if known is None:
+        return Notation()
+    model: Model = known.declared.scope.model
+    others = {name for table in (model.parameters, model.coordinates, model.speeds, model.inputs) for name in table}
+    own = {name: each.symbol for name, each in model.outputs.items() if each.symbol and name not in others}
+    return notation_of(model).with_symbols(own)
+
+
+def heads_in_symbols(run: Trajectory) -> dict[str, str]:
+    r"""{column of a run: its name as formulas have it, "$\varphi$"}; energy and reactions keep their names."""
+    notation, named = notation_of_run(run), ("t", *run.coordinates, *run.speeds, *run.outputs)
+    return {name: f"${notation.latex(name)}$" for name in run.columns() if name in named}
 
 
 def by_unit(trajectory: Trajectory, units: Mapping[str, Unit]) -> dict[Unit, list[str]]:

@@ -27,7 +27,13 @@ from eomgen.symbolic.numeric import NoValue, tolerances
 NAME, HOW = "reported values of the run are those of its states", "states by their names, texts read back"
 ROWS = 3  # of a file or table that are looked at: its first, middle and last
 FINE = 50  # instants that show how a coordinate goes between them
+_DOTS = re.compile(r"\\(dot)\{((?:[^{}]|\{[^{}]*\})*)\}")
 _HEAD = re.compile(r"(?P<name>.*?)(?: \[(?P<unit>[^\]]*)\])?")
+
+
+def _plain(letters: str) -> str:
+    r"""The letters and digits of a name, or of its LaTeX: those of \varphi are phi."""
+    return re.sub(r"\\(?:var|mathrm|mathit|operatorname)?|[^A-Za-z0-9]", "", letters)
 
 
 @dataclass(frozen=True)
@@ -92,15 +98,26 @@ class _RunReported:
         """(name, size of its unit), where that is a unit that it can have."""
         match = _HEAD.fullmatch(head)
         assert match is not None
-        if match["name"] not in self.own:
+        name = match["name"]
+        if name.startswith("$"):
+            letters, dots = _DOTS.subn(r"\2", name.strip("$"))
+            name = self._by_letters(letters) + "'" * dots
+        if name not in self.own:
             raise NoValue(f"'{match['name']}' is no column of the run")
         unit = match["unit"]
         if unit is None:
-            return match["name"], 1.0
-        wanted = self._unit(match["name"])
+            return name, 1.0
+        wanted = self._unit(name)
         if wanted is not None and Unit.parse(wanted).dimension != Unit.parse(unit).dimension:
             raise _Unlike(f"[{unit}] for [{wanted}]")
-        return match["name"], Unit.parse(unit).size
+        return name, Unit.parse(unit).size
+
+    def _by_letters(self, tex: str) -> str:
+        """The name for which the model declares a symbol, else that of the same letters."""
+        tables = (self.model.coordinates, self.model.speeds, self.model.outputs)
+        declared = {x.symbol.tex: name for table in tables for name, x in table.items() if x.symbol is not None}
+        alike = {_plain(name): name for name in self.own if not name.endswith("'")}
+        return declared.get(tex) or alike.get(_plain(tex), tex)
 
     def _unit(self, name: str) -> str | None:
         """Unit of a column by the kind of its quantity."""

@@ -362,11 +362,17 @@ class Trajectory:
         named |= ({} if self.energy is None else {"energy": self.energy}) | dict(self.reactions)
         return named | {f"{name}{OUTPUT}" if name in named else name: y for name, y in self.outputs.items()}
 
-    def to_csv(self, path: str | Path | IO[str], units: Mapping[str, Unit] | None = None) -> None:
+    def to_csv(
+        self,
+        path: str | Path | IO[str],
+        units: Mapping[str, Unit] | None = None,
+        heads: Mapping[str, str] | None = None,
+    ) -> None:
         """A header line and one line an instant.
 
         Args:
             units: of the columns, "theta [deg]"; None: plain names, and SI.
+            heads: what stands in the place of names.
         Raises:
             WriteFailed: the file cannot be written; the old file is then unchanged.
         """
@@ -376,7 +382,8 @@ class Trajectory:
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
         reported = dict[str, Unit]() if units is None else units
-        writer.writerow(f"{name} [{reported[name]}]" if name in reported else name for name in columns)
+        known = {name: (heads or {}).get(name, name) for name in columns}
+        writer.writerow(f"{head} [{reported[name]}]" if name in reported else head for name, head in known.items())
         given = (x / reported[name].size if name in reported else x for name, x in columns.items())
         writer.writerows(zip(*(column.tolist() for column in given), strict=True))
         if isinstance(path, (str, Path)):

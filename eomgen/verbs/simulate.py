@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from eomgen import pipeline
-from eomgen.documents import Document
+from eomgen.documents import Document, heads_in_symbols, run_picture
 from eomgen.errors import UsageError
 from eomgen.files import is_stream
 from eomgen.model import Model, WrittenEquation
@@ -26,6 +26,7 @@ def simulate_document(
     plot: str | None,
     view: str = "time",
     units: bool = False,
+    symbols: bool = False,
     certify: bool = True,
 ) -> Document:
     """The motion from the start; trajectory and picture are written where files are given."""
@@ -35,10 +36,9 @@ def simulate_document(
     if output and Path(output).suffix.lower() == ".npz":
         run.to_npz(output)
     elif output:
-        run.to_csv(output, model.units_of(run.columns()) if units else None)
+        heads = heads_in_symbols(run) if symbols else None
+        run.to_csv(output, model.units_of(run.columns()) if units else None, heads)
     if plot:
-        from eomgen.documents import run_picture
-
         run_picture(run, view, title=model.name, units=model.units_of(run.columns())).save(plot)
     return run_document(equations, run, output=output, plot=plot, certify=certify)
 
