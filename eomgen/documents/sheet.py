@@ -84,6 +84,9 @@ def _of_output(model: Model, name: str, output: Output) -> Iterator[Piece]:
     yield "."
 
 
+SAID_ALREADY = ("=", r"\approx", "≈")  # what stands before a value whose letter the author wrote
+
+
 def _said(model: Model, text: str) -> Prose:
     """A paragraph of a problem: words, formulas, and declared names with their values."""
     pieces: list[Piece] = []
@@ -94,7 +97,8 @@ def _said(model: Model, text: str) -> Prose:
         if found["math"] is not None:
             pieces.append(Law(found["math"].strip(), found["math"].strip()))
         elif found["name"] is not None:
-            pieces.append(_valued(model, found["name"].strip()))
+            named = text[: found.start()].rstrip(" \n$").endswith(SAID_ALREADY)
+            pieces.append(_valued(model, found["name"].strip(), letter=not named))
         else:
             pieces.append(found["plain"] or found[0])
     pieces.append(_words(text[end:]))
@@ -119,19 +123,23 @@ def _joined(pieces: list[Piece]) -> Iterator[Piece]:
         yield text.rstrip() if isinstance(text, str) and k == len(found) - 1 else text
 
 
-def _valued(model: Model, name: str) -> Law:
-    """name = value unit, of a parameter, an input, the start of a coordinate or of its rate."""
+def _valued(model: Model, name: str, *, letter: bool = True) -> Law:
+    """name = value unit, of a parameter, an input, the start of a coordinate or of its rate.
+
+    Args:
+        letter: the name stands before its value.
+    """
     bare, values = name.rstrip("'"), model.exact_parameters()
     tables: tuple[Mapping[str, Any], ...] = (model.parameters, model.inputs, model.coordinates)
     part = next(table[bare] for table in tables if bare in table)
     value = (part.speed if name != bare else part.start) if isinstance(part, Coordinate) else part.value
     unit = "" if part.unit is None else str(part.unit)
     unit = unit_text(unit_per(unit, "s") if name != bare else unit)
-    letter = notation_of(model).latex(name)
+    tex = notation_of(model).latex(name)
     if value is None:
-        return Law(name, letter)
-    number = start_shown(value, values, part)
+        return Law(name, tex)
+    before, number = (f"{name} = ", f"{tex} = ") if letter else ("", ""), start_shown(value, values, part)
     if unit == "deg":
-        return Law(f"{name} = {number}°", rf"{letter} = {number_latex(number)}^{{\circ}}")
+        return Law(f"{before[0]}{number}°", rf"{before[1]}{number_latex(number)}^{{\circ}}")
     number = f"{number} {unit}".strip()
-    return Law(f"{name} = {number}", f"{letter} = {number_latex(number)}")
+    return Law(f"{before[0]}{number}", f"{before[1]}{number_latex(number)}")

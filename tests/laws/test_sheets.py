@@ -160,6 +160,10 @@ def test_words_of_a_problem_are_set_with_values_and_formulas(tmp_path):
     page = (tmp_path / "p.md").read_text()
     assert r"mass $m = 20\ \text{g}$ hangs" in page and r"$\varphi = 60^{\circ}$" in page
     assert r"$S_{\mathrm{max}} = 0.5\ \text{N}$" in page and r"$g = 9.81\,\mathrm{m/s^2}$" in page
+    path = tmp_path / "m.toml"
+    path.write_text(CONKER.read_text().replace("of mass {m}", "of mass $m$ = {m}"))
+    report(path, tmp_path / "p.md", for_="problem")
+    assert r"mass $m$ = $20\ \text{g}$ hangs" in (tmp_path / "p.md").read_text()
 
 
 @each(
