@@ -157,9 +157,7 @@ LANGUAGE = click.option(
 )
 DURATION = partial(click.option, "--time", type=time_typed, metavar="TIME")
 TIME = DURATION(default=10.0, show_default=True, help='How long: 5 is in s, or "500 ms".')
-PAGE_TIME = DURATION(
-    help='How long: 5 is in s, or "500 ms".  [default: 10 s, less where it stops or takes too many steps]'
-)
+PAGE_TIME = DURATION(help='How long: 5 is in s, or "500 ms".  [default: three periods, until it rests, or 10 s]')
 AT = partial(click.option, "--at", metavar="EQUATION")
 FROM_REST = partial(click.option, "--from-rest", multiple=True)
 VIEW = partial(click.option, "--view")

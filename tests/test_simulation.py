@@ -211,6 +211,33 @@ def test_what_is_too_fast_to_be_looked_at_is_followed_for_a_shorter_time():
     assert requested.t[-1] == 2e-6 and not words
 
 
+@each(
+    "stiffness, damping, time, words",
+    [
+        (1000, 0, 0.6, "three periods"),  # T = 2 pi/sqrt(1000) = 0.199 s
+        (0.09, 0, 10, ""),  # T = 20.9 s: nobody sees in 10 s that it swings
+        (0.5, 0, 30, "three periods"),  # T = 8.9 s
+        (1000, 40, 0.4, "until it rests"),  # exp(-20 t) with a swing in it
+        (4, 0, 10, ""),  # T = 3.1 s
+        (0, 0, 10, ""),  # it goes on
+    ],
+)
+def test_a_page_lasts_as_its_motion_wants(stiffness, damping, time, words):
+    text = f"""
+    eomgen = 1
+    space = "plane"
+    parameters = {{ m = 1, k = {stiffness}, c = {damping} }}
+    coordinates.x = {{ start = 1, speed = 1 }}
+    points = {{ O = [0, 0] }}
+    bodies.b.shape = {{ kind = "particle", mass = "m" }}
+    bodies.b.joint = {{ kind = "prismatic", axis = [1, 0], displacement = "x" }}
+    forces.s = {{ kind = "spring", points = ["O", "b.origin"], stiffness = "k", length = 0 }}
+    forces.d = {{ kind = "damper", points = ["O", "b.origin"], damping = "c" }}
+    """
+    run, why = run_of_a_page(eomgen.derive(eomgen.loads(text)), None, 11)
+    assert run.ok and run.t[-1] == pytest.approx(time) and (words in why if words else not why)
+
+
 def test_pages_of_a_motion_that_cannot_go_on_show_it_so_far(tmp_path):
     """x = 0.8 t and cos(alpha) = -x/0.5 end at t = 0.625 s; where a time is asked for the run has failed."""
     text = """

@@ -112,7 +112,8 @@ def play(
 
     Args:
         path: the file of the page; None: it is not written.
-        time: the duration of the motion: 5 s or "500 ms"; None: 10 s, less where it stops or takes too many steps.
+        time: the duration of the motion: 5 s or "500 ms"; None: three periods, until it rests, or
+            10 s; less where it stops or takes too many steps.
         sliders: names with a slider, each "NAME" or "NAME=FROM:TO", numbers in SI or with a unit; () for everything.
         parameters, start: values that replace the model's, each as `model_at` takes it.
         trail: a point that leaves a trail from the start.

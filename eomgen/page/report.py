@@ -241,7 +241,8 @@ def report(
 
     Args:
         path: the file that is written; None: nothing is.
-        time: the duration of the motion: 5 s or "500 ms"; None: 10 s, less where it stops or takes too many steps.
+        time: the duration of the motion: 5 s or "500 ms"; None: three periods, until it rests, or
+            10 s; less where it stops or takes too many steps.
         parameters, start: values that replace the model's, each as `model_at` takes it.
         with_, without: sections besides those that fit the model, or not among them: the keys of `SECTIONS`.
         certify: its results are proven.

@@ -129,10 +129,16 @@ def run(
 PAGE_TIME = 10.0  # s
 PAGE_STEPS = 100_000  # a motion that needs more is too fast to be shown as a whole
 PAGE_PHASES = 500  # of contacts, for the same reason
+PERIODS = 3  # of the slowest oscillation that are shown
+LONGEST = 60.0  # s, of a motion that is so slow
+STILL = 1e-3  # of the largest rate: slower, and it rests
+SWING = 0.05  # of the largest rate: smaller changes of sign are no oscillation
+ROUND = (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10)  # times, in powers of ten
+ALIKE = (0.6, 1.3)  # of PAGE_TIME: it is taken in place of times between
 
 
 def run_of_a_page(equations: Equations, time: float | None, samples: int) -> tuple[Trajectory, str]:
-    """Motion that a page shows, and why it is shorter than PAGE_TIME; "" where it is not.
+    """Motion that a page shows, and why it does not last PAGE_TIME; "" where it does.
 
     Args:
         time: how long [s]; None: PAGE_TIME, or as `page_time` has it.
@@ -152,12 +158,14 @@ def page_stepping() -> Stepping:
 
 
 def page_time(found: Trajectory) -> tuple[float, str]:
-    """Time for which a motion is shown where none is given [s], and why it is shorter than PAGE_TIME; "".
+    """Time for which a motion is shown where none is given [s], and why it is not PAGE_TIME; "".
 
-    It is a round time before too many steps are taken, or before a position from which constraints or contacts do not
-    determine how the motion goes on.
+    It is a round time: until the motion rests, or for three periods of its slowest oscillation; or before too many
+    steps are taken, or before a position from which constraints or contacts do not determine how the motion goes on.
     """
     end = found.phases[-1].end if found.phases else 0.0
+    if found.ok and end == PAGE_TIME:
+        return _by_its_motion(found)
     if found.ended not in ("too many steps", "singular", "contact") or not end > 0:
         return PAGE_TIME, ""
     power = 10.0 ** math.floor(math.log10(end))
@@ -166,6 +174,53 @@ def page_time(found: Trajectory) -> tuple[float, str]:
         return time, f"Followed for {time:g} s. {found.message}"
     why = f"{PAGE_TIME:g} s would take more than {PAGE_STEPS} steps; --time says otherwise."
     return time, f"Followed for {time:g} s: {why}"
+
+
+def _by_its_motion(found: Trajectory) -> tuple[float, str]:
+    """As `page_time`, of a motion that lasted PAGE_TIME."""
+    t, rates = _rates(found)
+    largest = np.max(np.abs(rates), axis=0, initial=0.0)
+    moving = np.abs(rates) > STILL * largest
+    last = np.flatnonzero(np.any(moving[:, largest > 0], axis=1))
+    if not len(last):
+        return PAGE_TIME, ""
+    if last[-1] + 1 < len(t) and t[last[-1]] < ALIKE[0] * PAGE_TIME:
+        time = _rounded(1.1 * float(t[last[-1]]))
+        return time, f"Followed for {time:g} s, until it rests; --time says otherwise."
+    periods = [period for k in np.flatnonzero(largest) if (period := _period(t, rates[:, k]))]
+    wanted = PERIODS * max(periods, default=0.0)
+    time = _rounded(min(wanted, LONGEST))
+    if not periods or ALIKE[0] < time / PAGE_TIME < ALIKE[1]:
+        return PAGE_TIME, ""
+    shown = "three periods" if wanted <= time else "a part"
+    return time, f"Followed for {time:g} s, {shown} of its slowest oscillation; --time says otherwise."
+
+
+def _rates(found: Trajectory) -> tuple[np.ndarray, np.ndarray]:
+    """(instants, rates of the coordinates): at the integrator's steps where the motion has one phase, which see what
+    is faster than the instants that are given."""
+    first = found.phases[0]
+    if len(found.phases) == 1 and first.model is not None and first.track is not None:
+        t, x = first.track
+        return t, x[:, len(first.model.coordinates) :]
+    return found.t, found.x[:, len(found.coordinates) :]
+
+
+def _period(t: np.ndarray, rate: np.ndarray) -> float | None:
+    """Twice the mean time between changes of sign of a rate, small swings left out, a start at rest counted as one;
+    None: it does not swing."""
+    large = np.flatnonzero(np.abs(rate) > SWING * np.max(np.abs(rate)))
+    before, after = large[:-1], large[1:]
+    turned = np.sign(rate[before]) != np.sign(rate[after])
+    (t0, u0), (t1, u1) = ((t[k[turned]], rate[k[turned]]) for k in (before, after))
+    changes = np.concatenate([t[:1] if large[0] else t[:0], t0 - u0 * (t1 - t0) / (u1 - u0)])
+    return None if len(changes) < 2 else 2 * float(changes[-1] - changes[0]) / (len(changes) - 1)
+
+
+def _rounded(time: float) -> float:
+    """The next round time that is not shorter."""
+    power = 10.0 ** math.floor(math.log10(time)) if time > 0 else 1.0
+    return next((factor * power for factor in ROUND if factor * power >= 0.999 * time), 10 * power)
 
 
 def _whole(found: Trajectory) -> Trajectory:
