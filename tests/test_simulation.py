@@ -17,7 +17,7 @@ import eomgen
 from eomgen.cli import main
 from eomgen.codegen.program import program_of, right_hand_side
 from eomgen.codegen.rhs import compiled, parameter_vector
-from eomgen.documents.figures import heads_in_symbols, mathtext, over_time
+from eomgen.documents.figures import heads_in_symbols, mathtext, over_time, range_without_noise
 from eomgen.errors import UsageError, WriteFailed
 from eomgen.mechanics.dynamics import formulations as recursive
 from eomgen.model.quantities import Unit
@@ -489,6 +489,22 @@ def test_a_table_of_a_run_has_the_letters_of_formulas(tmp_path):
         rows = [(name, repr(float(x[0])), repr(float(x[-1]))) for name, x in run.columns().items()]
         checks = run_reported(run, eomgen.load(path), ReportedRun(rows, table=(first, lines)))
         assert all(check.status == "holds" for check in checks) == right
+
+
+@each(
+    "curves, size, shown",
+    [
+        ([[0.5, 0.5 + 1e-16]], 1e-3, (0.25, 0.75)),  # a coordinate that stays where it is
+        ([[0, 3e-17, -2e-17]], 1e-3, (-5e-4, 5e-4)),
+        ([[0, 3e-17, -2e-17]], 100, (-50, 50)),  # a reaction beside others of 100 N
+        ([[0, 1e-8], [7, 7]], 1e-3, None),  # one that changes, by little
+        ([[float("nan"), 2, 2]], 1e-3, (1, 3)),
+        ([], 1e-3, None),
+    ],
+)
+def test_noise_is_not_plotted(curves, size, shown):
+    found = range_without_noise(map(np.array, curves), size)
+    assert found == (None if shown is None else pytest.approx(shown))
 
 
 def test_npz_holds_the_same(tmp_path):

@@ -55,6 +55,8 @@ from eomgen.documents.drawing_on_a_page import flat_drawing as flat_drawing
 # M a + c = Q + J^T lam, row by row
 from eomgen.documents.equation_steps import sides_of as sides_of
 from eomgen.documents.figures import KINDS as KINDS
+from eomgen.documents.figures import LEAST as LEAST
+from eomgen.documents.figures import NOISE as NOISE
 
 # Settings of matplotlib with which every picture is drawn
 from eomgen.documents.figures import STYLE as STYLE
@@ -76,6 +78,7 @@ from eomgen.documents.figures import heads_in_symbols as heads_in_symbols
 
 # {reaction: (number of its colour, kind of its line)}: a colour an owner, a kind a component, no two alike
 from eomgen.documents.figures import kinds_of_lines as kinds_of_lines
+from eomgen.documents.figures import largest_reaction as largest_reaction
 
 # The joints and constraints with the largest reactions, as many as have their lines in one panel; in their order
 from eomgen.documents.figures import largest_reactions as largest_reactions
@@ -88,6 +91,7 @@ from eomgen.documents.figures import notation_of_run as notation_of_run
 
 # reaction_x(B.II) -> B.II; tension(rope, 2) -> rope
 from eomgen.documents.figures import owner_of as owner_of
+from eomgen.documents.figures import range_without_noise as range_without_noise
 
 # {unit: reactions that have a value at some instant}; units whose reactions are all 0 are left out
 from eomgen.documents.figures import reactions_by_unit as reactions_by_unit

@@ -310,10 +310,34 @@ def _curves(panel: Any, t: np.ndarray, curves: Mapping[str, np.ndarray], unit: U
     labels = [f"${mathtext(name, notation)}$" for name in names]
     for name, label, color in zip(names, labels, colors, strict=False):
         panel.plot(t, curves[name], label=label, color=color, linewidth=1.6 if few else 1.0)
+    _without_noise(panel, curves.values())
     shown = ", ".join(labels) if len(labels) <= 3 else f"{labels[0]}, …, {labels[-1]}"
     panel.set_ylabel(f"{shown} [{unit}]" if unit.text else shown)
     if len(names) > 1 and few:
         panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+
+
+NOISE = tolerances.RUN  # of the largest number: smaller changes are rounding and the errors of steps
+LEAST = 1e-3  # m, rad: noise is what is small beside so much, where a coordinate is smaller
+
+
+def range_without_noise(curves: Iterable[np.ndarray], size: float = LEAST) -> tuple[float, float] | None:
+    """Range of an axis in which the noise of curves that stay constant is not seen; None: one of them changes.
+
+    Args:
+        size: what is large beside them, in their unit.
+    """
+    finite = [x[np.isfinite(x)] for x in curves]
+    spans = [(float(x.min()), float(x.max())) for x in finite if len(x)]
+    size = max(size, *(abs(end) for span in spans for end in span)) if spans else size
+    if not spans or any(high - low > NOISE * size for low, high in spans):
+        return None
+    return min(low for low, _ in spans) - size / 2, max(high for _, high in spans) + size / 2
+
+
+def _without_noise(panel: Any, curves: Iterable[np.ndarray], size: float = LEAST) -> None:
+    if (ends := range_without_noise(curves, size)) is not None:
+        panel.set_ylim(*ends)
 
 
 def _energy(panel: Any, trajectory: Trajectory) -> None:
@@ -341,12 +365,20 @@ def _energy(panel: Any, trajectory: Trajectory) -> None:
 
 
 def reactions_by_unit(trajectory: Trajectory) -> dict[str, list[str]]:
-    """{unit: reactions that have a value at some instant}; units whose reactions are all 0 are left out."""
+    """{unit: reactions that have a value at some instant}; units whose reactions are all 0 but for rounding are left
+    out."""
     groups: dict[str, list[str]] = {}
     for name, column in trajectory.reactions.items():
         if not np.isnan(column).all():
             groups.setdefault(trajectory.units.get(name, ""), []).append(name)
-    return {unit: names for unit, names in groups.items() if any(_size(trajectory, name) > 0 for name in names)}
+    seen = NOISE * largest_reaction(trajectory)
+    return {unit: names for unit, names in groups.items() if any(_size(trajectory, name) > seen for name in names)}
+
+
+def largest_reaction(trajectory: Trajectory) -> float:
+    """Size of the largest of its reactions, of any unit; 0.0 where there is none."""
+    columns = [column for column in trajectory.reactions.values() if not np.isnan(column).all()]
+    return max((float(np.nanmax(np.abs(column))) for column in columns), default=0.0)
 
 
 def _size(trajectory: Trajectory, name: str) -> float:
@@ -371,6 +403,7 @@ def _reactions(panel: Any, trajectory: Trajectory, names: list[str], unit: str) 
             linewidth=1.4,
             linestyle=kind,
         )
+    _without_noise(panel, map(trajectory.reactions.__getitem__, names), largest_reaction(trajectory))
     panel.set_ylabel(f"reactions [{UNITS_OF_REACTIONS.get(unit, unit)}]")
     panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8)
     if len(shown) < len(owners):

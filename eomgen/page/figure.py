@@ -19,17 +19,21 @@ import numpy as np
 
 from eomgen.documents import (
     KINDS,
+    LEAST,
+    NOISE,
     Catalogue,
     Code,
     Picture,
     Piece,
     by_unit,
     kinds_of_lines,
+    largest_reaction,
     largest_reactions,
     mathtext,
     notation_of_run,
     owner_of,
     prose,
+    range_without_noise,
     reactions_by_unit,
     rest_picture,
 )
@@ -136,6 +140,7 @@ class Pictures:
 
 WIDTH, HEIGHT = 720.0, 186.0
 LEFT, RIGHT, TOP, BOTTOM = 58.0, 8.0, 8.0, 28.0  # margins, in which the numbers stand
+ROUNDING = 1e-15  # of the energy: its error is shown where it is larger
 TICKS = 5  # about so many numbers on an axis
 PLAIN = 4  # digits before or behind the point, beyond which a power of ten is written
 COLORS = 8
@@ -226,7 +231,8 @@ def _energy(run: Trajectory) -> ReportFigure:
         return panel(run, [Line(energy, "curve c7", ())], "energy", "Energy T + V [J] over time [s]")
     within = " in each phase" if len(run.phases) > 1 else ""
     caption = f"Energy: T + V less its value at the start [J] over time [s]; relative drift {run.drift:.1e}{within}"
-    return panel(run, [Line(energy - energy[:1], "curve c7", ())], "energy", caption)
+    rounding = ROUNDING / NOISE * float(np.nanmax(np.abs(energy), initial=0.0))
+    return panel(run, [Line(energy - energy[:1], "curve c7", ())], "energy", caption, rounding)
 
 
 def _reactions(run: Trajectory, names: Sequence[str], unit: str, number: int) -> ReportFigure:
@@ -240,15 +246,21 @@ def _reactions(run: Trajectory, names: Sequence[str], unit: str, number: int) ->
         for name, (color, kind) in looks.items()
     ]
     few = f"; the largest, at {len(shown)} of {len(owners)} joints and constraints" if len(shown) < len(owners) else ""
-    return panel(run, lines, f"reactions{number}", f"Reactions [{unit.replace('*', '·')}] over time [s]{few}")
+    caption = f"Reactions [{unit.replace('*', '·')}] over time [s]{few}"
+    return panel(run, lines, f"reactions{number}", caption, largest_reaction(run))
 
 
-def panel(run: Trajectory, lines: Sequence[Line], key: str, caption: str) -> ReportFigure:
-    """Curves of a run over time with their axes."""
+def panel(run: Trajectory, lines: Sequence[Line], key: str, caption: str, size: float = LEAST) -> ReportFigure:
+    """Curves of a run over time with their axes.
+
+    Args:
+        size: what is large beside them: what is noise beside it looks constant.
+    """
     t = run.t
     values = np.concatenate([line.values for line in lines]) if lines else np.zeros(1)
     finite = values[np.isfinite(values)]
     low, high = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 0.0)
+    low, high = range_without_noise([line.values for line in lines], size) or (low, high)
     across, up = number_axis(float(t[0]), float(t[-1])) if len(t) else number_axis(0, 1), number_axis(low, high)
 
     def x(value: np.ndarray | float) -> np.ndarray:
