@@ -34,10 +34,13 @@ from eomgen.cli_options import (
     PLOT,
     RTOL,
     SAMPLES,
+    SET,
     SPEED,
+    START,
     TIME,
     TRAIL,
     UNITS,
+    VARIANT,
     VIEW,
     WAY,
     WRITTEN,
@@ -437,15 +440,22 @@ def report_command(model: str, wants_json: bool, output: str | None, strict: boo
 @click.option("--port", type=click.IntRange(0, 65535), default=0, help="The port of 127.0.0.1.  [default: a free one]")
 @click.option("--no-browser", is_flag=True, help="Open no browser.")
 @click.option("--edit", is_flag=True, help="A pane to edit the file in the page.")
-def live_command(model: str, port: int, no_browser: bool, edit: bool, patience: float | None) -> int:
+@SET
+@START
+@VARIANT
+def live_command(model: str, port: int, no_browser: bool, edit: bool, patience: float | None, **values: Any) -> int:
     """Show a model in a page that follows its file.
 
     On each save: figure, problems, degrees of freedom, equations, answers, motion, reactions, each as soon as it is
-    there. The address is printed; Ctrl-C ends it. --patience is the time for one part.
+    there. The address is printed; Ctrl-C ends it. --patience is the time for one part. The values of --set and --start
+    stay in the place of the file's, and are not written into it.
     """
     from eomgen.living import serve
 
-    serve(model, port=port, edits=edit, opens=not no_browser, seconds=patience, say=click.echo)
+    if isinstance(values["variant"], range):
+        raise click.UsageError("one page shows one variant", click.get_current_context())
+    given = values if any(values.values()) else None
+    serve(model, port=port, edits=edit, opens=not no_browser, seconds=patience, values=given, say=click.echo)
     return 0
 
 

@@ -386,6 +386,35 @@ def test_the_motion_is_a_page_that_checks_itself(seen):
     seen.tab.open(before)
 
 
+@needs("chromium")
+def test_sliders_stay_where_they_are_over_a_save(seen):
+    """What was moved stays moved, but for a value that the file has changed meanwhile."""
+    tab = seen.tab
+    tab.until("held.page && Object.keys(held.values).length")
+    moved = json.dumps({"given": {"m1": 3, "theta1": 0.4}, "t": 0.5})
+    tab.value(f"document.querySelector('iframe').contentWindow.postMessage({moved}, '*')")
+    tab.until("held.given.m1 === 3 && held.given.theta1 === 0.4")
+    for old, new, left in (
+        ("0.5", "0.6", {"m1": 3, "theta1": 0.4}),
+        ("m1 = { value = 1.0", "m1 = { value = 2", {"theta1": 0.4}),
+    ):
+        before = tab.value("held.page")
+        seen.saved(seen.path.read_text().replace(old, new, 1))
+        tab.until(f"held.page !== {json.dumps(before)}")
+        tab.until(f"Object.keys(held.given).join() === '{','.join(left)}'")
+
+
+def test_values_of_the_command_stay_in_the_place_of_the_files(file):
+    """--set over a save; the name gone from the file is told."""
+    with live(file, "--set", "m1=3") as found:
+        page = found.until(1)["motion"]["digest"]
+        file.write_text(file.read_text().replace("m1 = { value = 1.0", "m1 = { value = 2.0"))
+        assert found.until(2)["motion"]["digest"] == page
+        file.write_text(file.read_text().replace("m1", "m9"))
+        state = found.until(3)
+        assert "m1" in state["problems"][0]["what"] and state["figure"]
+
+
 @needs("npm")
 def test_the_built_editor_is_that_of_its_source(tmp_path):
     """`npm ci` and `npm run build` in another folder give the same bytes."""

@@ -14,7 +14,7 @@ import sys
 import threading
 import time
 from base64 import b64decode
-from collections.abc import Callable, Hashable, Iterator
+from collections.abc import Callable, Hashable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import fields
 from functools import cached_property
@@ -24,7 +24,7 @@ from typing import IO, Any
 from eomgen import pipeline
 from eomgen.documents import Document, Formula, equations_latex, formula_text
 from eomgen.equations import Equations
-from eomgen.errors import DerivationError, EomgenError, MissingValues, ModelError, Problem
+from eomgen.errors import DerivationError, EomgenError, MissingValues, ModelError, Problem, UsageError
 from eomgen.frozen import dataclass
 from eomgen.living.state import NAMES
 from eomgen.model import Model, loads, located, warned
@@ -36,6 +36,7 @@ from eomgen.results import kinematics, statics
 from eomgen.study import checked_model, model_to_study
 from eomgen.symbolic.expression import Expression
 from eomgen.symbolic.numeric import NoValue
+from eomgen.verbs import typed
 
 PATIENCE = 30.0  # s for one part
 MOST_KEPT = 64  # parts
@@ -102,18 +103,30 @@ class Work:
                     self._end = None
 
 
-def parts_made(data: bytes, name: str, title: str, work: Work, seconds: float | None = PATIENCE) -> Iterator[Finding]:
+def parts_made(
+    data: bytes,
+    name: str,
+    title: str,
+    work: Work,
+    seconds: float | None = PATIENCE,
+    values: Mapping[str, Any] | None = None,
+) -> Iterator[Finding]:
     """Problems and parts of a model's text, in the order in which they are found; fewer where the work is stopped.
 
     Args:
         name: of the file, in problems.
         title: of a model that gives itself none.
         seconds: the time for one part; None: no limit.
+        values: what was typed in the place of those of the text: "set_", "start", "variant".
     """
     try:
         model = loads(data, name, title)
+        model = typed(model, values)[0].model if values else model
     except ModelError as error:
         yield {"problems": [problem.as_dict() for problem in error.problems], "good": False}
+        return
+    except UsageError as error:  # a value for a name that the text has no more
+        yield {"problems": _dicts((Problem("", error.what, fix=error.fix),)), "good": False}
         return
     subject = WrittenModel(model)
     problems: list[Problem] = []
@@ -314,6 +327,6 @@ def _listen(source: IO[str], requests: queue.Queue[dict[str, Any]], work: Work) 
 
 def _make(request: dict[str, Any], work: Work, out: IO[str]) -> None:
     revision, data = request["revision"], b64decode(request["data"])
-    for finding in parts_made(data, request["name"], request["title"], work, request["seconds"]):
+    for finding in parts_made(data, request["name"], request["title"], work, request["seconds"], request["values"]):
         out.write(json.dumps({"revision": revision, **finding}) + "\n")
     out.write(json.dumps({"revision": revision, "done": True}) + "\n")

@@ -9,7 +9,7 @@ import sys
 import threading
 import webbrowser
 from base64 import b64encode
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -27,6 +27,7 @@ def serve(
     edits: bool = False,
     opens: bool = True,
     seconds: float | None = 30.0,
+    values: Mapping[str, Any] | None = None,
     say: Callable[[str], object] = print,
 ) -> None:
     """Serves the page of a model's file until it is interrupted.
@@ -36,6 +37,7 @@ def serve(
         edits: the page may write the file.
         opens: the page is opened in a browser, where there is one.
         seconds: the time for one part; None: no limit.
+        values: what was typed in the place of those of the file: "set_", "start", "variant".
         say: takes the address.
     Raises:
         UsageError: the port is taken.
@@ -43,7 +45,7 @@ def serve(
     path = Path(path)
     state = LiveState({"file": path.name, "editable": edits})
     with LiveServer(path, state, port=port, edits=edits) as server:
-        team, watcher = Team(state.hear), Watcher(path, LARGEST)
+        team, watcher = Team(state.hear, values), Watcher(path, LARGEST)
 
         def followed(content: bytes | OSError) -> None:
             if isinstance(content, OSError):
@@ -224,10 +226,14 @@ class Worker:
 
 
 class Team:
-    """The worker that works and the one that waits."""
+    """The worker that works and the one that waits.
 
-    def __init__(self, hear: Hear) -> None:
-        self._hear = hear
+    Args:
+        values: what was typed in the place of those of each text.
+    """
+
+    def __init__(self, hear: Hear, values: Mapping[str, Any] | None = None) -> None:
+        self._hear, self._values = hear, values
         self._lock = threading.Lock()
         self._ended = False
         self.current = Worker(self._heard)
@@ -245,7 +251,7 @@ class Team:
                 self.current.leave()
                 self.current, self.spare = self.spare or Worker(self._heard), None
             packed = b64encode(data).decode("ascii")
-            self.current.begin(revision, data=packed, name=name, title=title, seconds=seconds)
+            self.current.begin(revision, data=packed, name=name, title=title, seconds=seconds, values=self._values)
 
     def end(self) -> None:
         """Ends all."""

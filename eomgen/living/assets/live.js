@@ -120,10 +120,19 @@ events.onerror = () => {
   place("status").textContent = "eomgen has ended, or cannot be reached";
 };
 
-// The page of the motion says how high it is.
+// The page of the motion says how high it is, and where its sliders stand: a new one begins where the last one was, but
+// for values that the file has changed meanwhile.
+let held = { page: "", values: {}, given: {}, t: 0 };
 addEventListener("message", (event) => {
-  const frame = document.querySelector("#motion iframe"), height = Number(event.data?.height);
-  if (frame && event.source === frame.contentWindow && height > 0) frame.style.height = `${Math.min(height, 2400) + 4}px`;
+  const frame = document.querySelector("#motion iframe"), { height, values, given, t } = event.data ?? {};
+  if (!frame || event.source !== frame.contentWindow) return;
+  if (Number(height) > 0) frame.style.height = `${Math.min(Number(height), 2400) + 4}px`;
+  if (!values) return;
+  if (held.page !== frame.dataset.page) {
+    const kept = Object.fromEntries(Object.entries(held.given).filter(([name]) => values[name] === held.values[name]));
+    if (Object.keys(kept).length || held.t) frame.contentWindow.postMessage({ given: kept, t: held.t }, "*");
+    held = { page: frame.dataset.page, values, given: kept, t: held.t };
+  } else held = { page: held.page, values, given, t };
 });
 
 // Formulas are copied as LaTeX, or as text that a model file reads.
