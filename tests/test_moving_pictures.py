@@ -114,7 +114,7 @@ space = "space"
 [coordinates]
 x = { speed = 1 }
 [bodies.puck]
-shape = { kind = "sphere", mass = 1, radius = 0.01 }
+shape = { kind = "rod", mass = 1, length = 1 }
 joint = { kind = "prismatic", axis = [1, 0, 0], displacement = "x" }
 """
     eomgen.simulate(eomgen.loads(text), time=5).animate(place)
