@@ -17,6 +17,7 @@ from typing import NoReturn
 import pytest
 from hypothesis import settings
 from quick_set import is_slow, model_of
+from slow_run import left_out
 
 from eomgen.resources import SELDOM
 
@@ -44,12 +45,17 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
 
 
 @pytest.hookimpl(trylast=True)
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """What is asked of one model by several files stands together, first: one process derives it, and once.
 
     Tests that import jax come last, in each worker too: its threads hold locks that a forked process waits for.
     Tests of the garbage collector come first: what others keep would be looked at by it again and again.
+    Of laws that are sampled the usual run asks a part of the cases, where no case is named.
     """
+    if not any("::" in each for each in config.args) and (left := left_out(items)):
+        config.hook.pytest_deselected(items=left)
+        gone = set(map(id, left))
+        items[:] = [item for item in items if id(item) not in gone]
     items.sort(key=lambda item: (1, "") if item.get_closest_marker("by_model") is None else (0, model_of(item)))
     items.sort(key=lambda item: "jax" in item.name)
     items.sort(key=lambda item: item.path.name not in COLLECTED)

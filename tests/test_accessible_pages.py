@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from browser import visited
-from slow_run import beside
+from slow_run import beside, in_slow_run, sampled
 from tools import REQUIRED, needs
 
 import eomgen
@@ -42,6 +42,7 @@ def player(name: str) -> str:
     return eomgen.play(MODELS / f"{name}.toml", time=0.5, trail="", forces=True).html
 
 
+@sampled(3)
 @pytest.mark.parametrize(
     ("made", "name"),
     [
@@ -62,6 +63,7 @@ def test_axe_finds_no_fault_in_a_page(made, name):
         assert violations == [] and passed > 20
 
 
+@in_slow_run
 def test_axe_finds_a_planted_fault():
     """A control without a name, letters too pale."""
     axe = resources.files("axe_core_python").joinpath("axe.min.js").read_text(encoding="utf-8")

@@ -6,6 +6,7 @@ import math
 
 import pytest
 from click.testing import CliRunner
+from slow_run import sampled
 
 import eomgen
 from eomgen.cli import main
@@ -83,6 +84,7 @@ CALLS = {
 }
 
 
+@sampled(2)
 @pytest.mark.parametrize("call", CALLS)
 @pytest.mark.parametrize("text", [RUBBING, GUIDED], ids=["friction that turns", "a pin that is carried along"])
 def test_what_is_driven_wholly_is_answered_by_every_verb(tmp_path, text, call):

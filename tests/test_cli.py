@@ -16,6 +16,7 @@ import click
 import pytest
 from click.testing import CliRunner
 from each import each
+from slow_run import in_slow_run
 
 import eomgen
 from eomgen import equations, pipeline
@@ -571,6 +572,7 @@ def test_reactions_from_rest_are_functions_of_the_coordinates():
     assert other["reactions"].keys() == found.keys()
 
 
+@in_slow_run
 def test_reactions_as_formulas_say_what_accelerates_and_what_has_no_single_value():
     """15 M R (cos theta'' - ...) by the equations of motion; in line the parallelogram is indeterminate
 
@@ -638,6 +640,7 @@ def test_generated_c_compiles_as_it_is_and_passes_its_own_test(tmp_path):
         subprocess.run(["./t"], cwd=tmp_path, check=True)
 
 
+@in_slow_run
 def test_the_languages_are_those_of_the_seam_jax_too(tmp_path):
     """codegen --list names ALL; an unknown one is exit 2 and names them too; several write into DIR/NAME."""
     names = [target.name for target in ALL]

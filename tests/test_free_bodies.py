@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from slow_run import usual_models
+from slow_run import sampled, usual_models
 
 import eomgen
 from eomgen.cli import main
@@ -47,6 +47,7 @@ def entries(free: FreeBodies) -> list[dict]:
     ]
 
 
+@sampled(4)
 @pytest.mark.parametrize("path", usual_models(PATHS), ids=lambda path: path.stem)
 def test_forces_and_moments_on_each_free_body_vanish_with_its_inertia(path):
     """sum F = 0, sum (r - c) x F + M = 0, by the numbers that are given alone; so does the certificate say."""
@@ -125,6 +126,7 @@ def test_the_picture_shows_each_body_with_the_letters_of_the_formulas():
 # -- lists that somebody hands in --------------------------------------------------------------------
 
 
+@sampled(4)
 @pytest.mark.parametrize("path", usual_models(PATHS, 1), ids=lambda path: path.stem)
 def test_a_list_that_forgets_nothing_is_right(path):
     if path.stem not in AT_NO_PLACE:

@@ -11,7 +11,7 @@ import pytest
 import sympy as sm
 from each import each
 from hand_made import symbols
-from slow_run import usual
+from slow_run import in_slow_run, sampled, usual
 from sympy.physics.mechanics import (
     KanesMethod,
     LagrangesMethod,
@@ -70,6 +70,7 @@ def test_accelerations_are_those_of_sympy(name):
         assert [found[u] for u in shared] == pytest.approx([expected[u] for u in shared], rel=1e-10, abs=1e-10 * size)
 
 
+@sampled(3)
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_a_model_of_sympy_is_proven_and_written(name, tmp_path):
     """Its certificate holds; the file that is written reads as the same model."""
@@ -264,6 +265,7 @@ def test_kinematic_equations_are_solved_for_the_speeds_where_sympy_has_none(expl
     assert found[3:] == pytest.approx([-0.7 * 0.8 * (2 - 4) / 1, 0.8 * 0.6 * (4 - 1) / 2, -0.6 * 0.7 * (1 - 2) / 4])
 
 
+@in_slow_run
 def test_a_bicycle_has_room_in_a_model_file_by_parts_with_names(tmp_path):
     """Sympy's own bicycle (743 000 characters multiplied out): u' as sympy has them, the file reads as the model.
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
-from slow_run import usual
+from slow_run import in_slow_run, sampled, usual
 
 from eomgen.cli import main
 
@@ -22,6 +22,7 @@ def derived(model: str, *options: str) -> str:
     return result.stdout
 
 
+@sampled(2)
 @pytest.mark.parametrize("format", usual(["text", "latex", "markdown", "json"], 2))
 def test_full_leaves_nothing_out_in_any_format(format):
     """26 more are too long to print here: not with --full"""
@@ -30,6 +31,7 @@ def test_full_leaves_nothing_out_in_any_format(format):
     assert "too long" not in full and "not printed" not in full
 
 
+@in_slow_run
 def test_full_carries_the_equations_in_the_steps_of_json():
     """q1'' to q7'' stand in the formulas of the last but one step"""
     steps = {step["key"]: step for step in json.loads(derived("arm7", "--json", "--full"))["steps"]}

@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from slow_run import sampled
 
 from eomgen.cli import main
 from eomgen.model import load
@@ -129,6 +130,7 @@ def differences(found: str, right: str) -> Iterator[str]:
             yield f"{x}   instead of   {y}"
 
 
+@sampled(2)
 @pytest.mark.parametrize("path", GOLDEN, ids=lambda path: path.stem)
 def test_what_is_read_is_the_golden_one(path, tmp_path, monkeypatch):
     """tests/golden/readings: read it, and write it anew where a change is meant"""

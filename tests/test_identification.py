@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import sympy
 from click.testing import CliRunner
-from slow_run import beside, usual
+from slow_run import beside, sampled, usual
 
 import eomgen
 from eomgen.cli import main
@@ -150,6 +150,7 @@ def test_what_a_given_kinetic_energy_takes_is_known_or_linear():
     assert "rho" in look_at("../docs/examples/kinetic").parameters
 
 
+@sampled(3)
 @pytest.mark.slow
 @pytest.mark.parametrize("name", usual(sorted({*EVERY} - {*QUICK, "stewart_platform", "delta_robot"}), 6))
 def test_every_model_has_its_regressor_and_its_rank(name):

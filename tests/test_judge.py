@@ -15,7 +15,7 @@ from derivations import loaded
 from each import each
 from hand_equations import MODELS, ByHand, named, right_of, wrong_of
 from human_errors import nearly_right_answers, right_answers, wrong_answers
-from slow_run import beside, usual
+from slow_run import beside, in_slow_run, usual
 
 import eomgen
 from eomgen.cli import main
@@ -807,6 +807,7 @@ def test_a_change_of_the_model_file_is_one_with_which_the_equation_is_right(mode
         assert Judge(Case(edit.model)).verdict(equation).verdict == "right", mistake.text
 
 
+@in_slow_run
 @pytest.mark.slow
 def test_thirty_freedoms_are_explained_by_the_row_concerned():
     """m x5'' + k (x5 - x4) - k (x6 - x5) = 0 in a row of thirty masses, in two seconds of work."""

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from each import each
+from slow_run import sampled
 
 import eomgen
 from eomgen.page.figure import rest_figure
@@ -52,6 +53,7 @@ def test_every_kind_has_an_example_that_is_proven(kind):
     assert certificate.ok is True and certificate.checks
 
 
+@sampled(3)
 @pytest.mark.parametrize("kind", EVERY)
 def test_every_kind_has_a_picture(kind, tmp_path):
     """Of lengths above 0, with finite numbers, and with marks of the kind itself where it can be seen."""

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from derivations import LOOSE, by_every_method, derivable, entries, equations, in_time, model_called, read_back
+from slow_run import sampled
 
 from eomgen.documents import rendered
 from eomgen.documents.document import Document
@@ -149,6 +150,7 @@ def test_what_is_printed_of_short_trees_is_looked_at(name):
     assert is_short_tree(name)
 
 
+@sampled(2)
 @pytest.mark.parametrize("name", [*BY_KINETOSTATICS, "ladder"])
 def test_the_printed_equations_of_every_body_hold_along_every_motion(name):
     """sum F + F_in = 0, sum M + M_in = 0 with the reactions and accelerations that the equations give"""
@@ -178,6 +180,7 @@ def test_printed_inertia_forces_are_what_is_missing_in_the_balance_of_the_bodies
     assert equal_at_random_states(pairs).equal
 
 
+@sampled(3)
 @pytest.mark.parametrize(
     ("name", "method"),
     [*((name, "lagrange") for name in HELD), *((name, "kinetostatic") for name in BY_KINETOSTATICS)],
@@ -243,6 +246,7 @@ def test_indeterminate_reactions_are_said_with_what_they_leave_open():
     assert "Delta(P_y) = -2*k1" in text
 
 
+@sampled(2)
 @pytest.mark.parametrize("name", HELD)
 def test_reactions_in_json_read_back_by_the_names_of_outputs(name):
     """{name: text}: the values that an output of that name has, accelerations as theta''"""

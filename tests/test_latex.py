@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 from derivations import by_methods, derivable, equations
 from each import each
+from slow_run import sampled
 from typesetting import lost_in_mathml, lost_in_typst
 
 from eomgen.documents import rendered
@@ -68,6 +69,7 @@ def formulas(markdown: str) -> list[str]:
     return displays + re.findall(r"\$([^$\n]+)\$", rest)
 
 
+@sampled(4)
 @pytest.mark.parametrize(("name", "method"), by_methods())
 def test_formulas_keep_to_what_amsmath_and_katex_share(name, method):
     """every command is known to both, every brace and environment closes, only aligned and cases are used"""
@@ -84,6 +86,7 @@ def test_formulas_keep_to_what_amsmath_and_katex_share(name, method):
         assert not lost_in_mathml(formula) and not lost_in_typst(formula), formula
 
 
+@sampled(3)
 @pytest.mark.parametrize("name", derivable())
 def test_documents_are_balanced(name):
     assert balanced(rendered(equations(name).derivation, "latex"))

@@ -22,6 +22,7 @@ from pathlib import Path
 import axe_core_python
 import pytest
 from driven_browser import Tab, driven_tab
+from slow_run import in_slow_run
 from tools import needs
 
 from eomgen.living.session import Team, Worker
@@ -100,6 +101,7 @@ def test_the_first_line_is_the_address_and_ctrl_c_ends_it_well(file):
         assert children and not [child for child in children if Path(f"/proc/{child}/cmdline").exists()]
 
 
+@in_slow_run
 def test_workers_end_where_the_program_is_killed(file):
     """Their stdin ends with it."""
     with live(file) as found:
@@ -133,6 +135,7 @@ def test_a_broken_file_keeps_the_last_good_picture(file):
         assert mended["figure"] != first["figure"] and mended["problems"] == [] and mended["good"]
 
 
+@in_slow_run
 def test_long_work_that_is_out_of_date_is_left_behind(tmp_path):
     """A model that takes a minute, then another one: the second is there soon, by the worker or by the spare one."""
     path = tmp_path / "m.toml"
@@ -149,6 +152,7 @@ def test_long_work_that_is_out_of_date_is_left_behind(tmp_path):
         assert time.monotonic() - begun < 15
 
 
+@in_slow_run
 def test_a_worker_that_does_not_stop_is_replaced_by_the_spare_one(monkeypatch):
     """Its process ends within PAUSE and the kill; the spare one answers."""
     heard: list[dict] = []
@@ -173,6 +177,7 @@ def test_a_worker_that_does_not_stop_is_replaced_by_the_spare_one(monkeypatch):
 _say = Worker.say
 
 
+@in_slow_run
 def test_the_address_is_opened_in_the_browser_that_is_named(tmp_path, file):
     """BROWSER is called with the address; with --no-browser it is not."""
     log = tmp_path / "opened"
@@ -313,6 +318,7 @@ def test_names_are_offered_while_one_types(seen):
     tab.until("(document.querySelector('#save').disabled = true)")
 
 
+@in_slow_run
 @needs("chromium")
 def test_the_page_can_be_used_by_all(seen):
     """axe finds nothing against WCAG A and AA, with a problem shown and without."""
@@ -415,6 +421,7 @@ def test_values_of_the_command_stay_in_the_place_of_the_files(file):
         assert "m1" in state["problems"][0]["what"] and state["figure"]
 
 
+@in_slow_run
 @needs("npm")
 def test_the_built_editor_is_that_of_its_source(tmp_path):
     """`npm ci` and `npm run build` in another folder give the same bytes."""

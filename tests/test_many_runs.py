@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from slow_run import beside
+from slow_run import beside, sampled
 
 import eomgen
 from eomgen.codegen.build import compiler
@@ -25,6 +25,7 @@ def alone(name: str, i: int, time: float, given: dict, samples: int) -> eomgen.T
     return eomgen.simulate(MODELS / f"{name}.toml", time=time, samples=instants, **own)
 
 
+@sampled(2)
 @pytest.mark.slow
 @pytest.mark.parametrize("target", [None, "numpy"])
 @pytest.mark.parametrize(

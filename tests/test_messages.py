@@ -9,6 +9,7 @@ import pytest
 from click.testing import CliRunner
 from each import each
 from newcomer import CRANE
+from slow_run import sampled
 from source_trees import modules_of, nodes_of
 
 import eomgen
@@ -140,6 +141,7 @@ length = 1
 """
 
 
+@sampled(2)
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("words", "code"),

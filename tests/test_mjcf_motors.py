@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from slow_run import sampled
 
 import eomgen
 from eomgen.errors import ModelError
@@ -162,6 +163,7 @@ def test_limits_springs_and_plugins_are_told_by_name(tmp_path):
     assert reported(found) == {"motors by plugins": ("servo",)} and not found.model.inputs
 
 
+@sampled(2)
 @pytest.mark.parametrize("by", ["body1='b' body2='f' relpose='.2 .3 .1 .9 .1 .2 .3'", "site1='s2' site2='sf'"])
 def test_bodies_that_are_welded_start_where_they_are(by, tmp_path):
     """A weld that gapes at the start: the start is moved to where phi = 0, and J spans MuJoCo's rows there."""

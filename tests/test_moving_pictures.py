@@ -16,6 +16,7 @@ from click.testing import CliRunner
 from forked import needs_sh
 from matplotlib.figure import Figure
 from PIL import Image
+from slow_run import sampled
 
 import eomgen
 from eomgen.cli import main
@@ -193,6 +194,7 @@ def test_each_phase_of_a_moving_picture_is_drawn_by_its_own_system(name, body):
 STRUCTURES = ("gerber_beam", "fink_truss", "three_hinged_arch", "strut_frame", "tripod", "cantilever", "k_truss")
 
 
+@sampled(3)
 @pytest.mark.parametrize("name", STRUCTURES)
 def test_the_drawn_virtual_displacement_gives_the_reaction_that_the_balance_of_bodies_gives(name):
     """R u_R + sum of F u + sum of M phi = 0 over the arrows of the picture, u and phi as far as the picture moves them.

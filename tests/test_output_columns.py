@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from slow_run import usual
+from slow_run import sampled, usual
 
 import eomgen
 from eomgen.model.fields import Table
@@ -41,6 +41,7 @@ def instants(model: eomgen.Model, when: float) -> dict[str, float | None]:
     return {name: answer.value for name, answer in eomgen.solve(replace(model, outputs=Table(at))).items()}
 
 
+@sampled(3)
 @pytest.mark.parametrize("name", usual([*SYSTEMS], 3))
 def test_a_column_is_what_solve_answers_at_the_instant(name: str):
     """Compiled programs over all rows against closed forms, energy theorem and exact balance at t = 0.37 s."""

@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from browser import visited
-from slow_run import usual
+from slow_run import in_slow_run, sampled, usual
 from tools import REQUIRED, needs
 from typesetting import lost_in_mathml, lost_in_typst
 
@@ -235,6 +235,7 @@ def read_back(packed):
     return found
 
 
+@sampled(2)
 @needs("chromium")
 @pytest.mark.parametrize("name", ["double_pendulum", "a_frame"])
 def test_nothing_is_wider_than_a_telephone(name):
@@ -294,6 +295,7 @@ def test_a_strangers_text_is_text_in_every_format(tmp_path):
 # -- formulas --------------------------------------------------------------------------------------
 
 
+@sampled(2)
 @pytest.mark.parametrize("name", ["a_frame", "seeds/ch11_p3", "seeds/ch21_p1", "cart_pole", "seeds/s1_inertia_tensor"])
 def test_no_formula_and_no_row_of_it_is_lost(name):
     """Of structures, mechanisms, small motions and bodies; those of all derivations are looked at in test_latex."""
@@ -398,6 +400,7 @@ def test_a_notebook_was_run_with_the_values_of_the_report(tmp_path):
     assert "'parameters': {'l': '3'}" in "".join(code[0]["source"])
 
 
+@in_slow_run
 @has("nbclient")
 def test_a_notebook_shows_no_picture_of_what_has_none(tmp_path):
     """Places of rest in space are told without a picture, and every cell runs."""

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from slow_run import sampled
 
 import eomgen
 from eomgen.documents.drawing import limits
@@ -75,6 +76,7 @@ def test_a_spring_is_a_zigzag_from_end_to_end():
     assert np.all(np.diff(line @ np.array([0.6, 0.8])) > 0)
 
 
+@sampled(2)
 @pytest.mark.parametrize(
     "made",
     [

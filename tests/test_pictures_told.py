@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from slow_run import usual
+from slow_run import sampled, usual
 
 import eomgen
 from eomgen.documents.space_drawing import drawing_at_rest
@@ -321,6 +321,7 @@ def test_what_moves_freely_in_the_plane_is_drawn(body: str):
     assert f"'{body}': is not drawn" in found if body else not found
 
 
+@sampled(2)
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:.*reactions|.*indeterminate:RuntimeWarning")
 @pytest.mark.parametrize("path", usual(MODELS, 30, 26), ids=lambda path: path.stem)

@@ -12,7 +12,7 @@ import pytest
 from browser import visited
 from click.testing import CliRunner
 from each import each
-from slow_run import usual
+from slow_run import sampled, usual
 from tools import needs
 
 import eomgen
@@ -38,6 +38,7 @@ def page(name: str, **options) -> str:
     return play(MODELS / f"{name}.toml", time=END, **options).html
 
 
+@sampled(2)
 @pytest.mark.parametrize("name", usual([*GIVEN], 2))
 def test_the_page_moves_as_a_simulation_says(name):
     """state(t) of the recorded run, then of one with other parameters and starts, equals eomgen.simulate's to 1e-6."""

@@ -16,7 +16,7 @@ from cpu_limit import cpu_limit
 from derivations import equations as equations_of
 from derivations import moving
 from moving import at
-from slow_run import usual
+from slow_run import sampled, usual
 
 import eomgen
 from eomgen.documents.figures import over_time
@@ -86,6 +86,7 @@ def test_what_has_no_place_or_is_held_by_nothing_is_named(name, culprit):
     assert culprit in str(caught.value)
 
 
+@sampled(2)
 @pytest.mark.parametrize("path", HELD, ids=lambda path: path.stem)
 def test_a_column_is_what_an_output_of_its_name_says(path):
     """reaction_x(B), reaction_n(wall), tension(rope, 2), drive(q): the same number, in the motion through a state."""

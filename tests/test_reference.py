@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 from click.testing import CliRunner
 from each import each
+from slow_run import sampled
 
 import eomgen
 from eomgen.cli import main
@@ -70,6 +71,7 @@ def test_a_whole_model_of_the_pages_derives_and_is_certified(text):
     assert eomgen.derive(eomgen.loads(text)).certify().ok
 
 
+@sampled(2)
 @pytest.mark.parametrize("piece", PIECES, ids=first_table)
 def test_a_piece_of_the_reference_derives_and_its_outputs_are_answered(piece):
     """Every other ```toml block, added to the model of the page."""

@@ -26,7 +26,7 @@ from derivations import (
     symbols_named,
 )
 from slow_run import ALL as ALL_MODELS
-from slow_run import usual
+from slow_run import sampled, usual
 
 from eomgen.documents.derivation import derivation_of
 from eomgen.documents.document import Document
@@ -108,6 +108,7 @@ def without_names(derivation: Document, scalars: Sequence[Scalar]) -> tuple[Scal
     return substituted(scalars, known)
 
 
+@sampled(2)
 @pytest.mark.parametrize(("name", "method"), [pair for pair in by_every_method() if pair[0] in SMALL])
 def test_printed_equations_read_back_as_the_equations_of_motion(name, method):
     """divisor (left - right) = M a + c - Q - J^T lam"""
@@ -263,6 +264,7 @@ def test_kinetic_energies_come_out_as_a_textbook_prints_them(name):
     assert printed[1] == derived.entries()["kinetic_energy"] == KINETIC_ENERGIES[name]
 
 
+@sampled(2)
 @pytest.mark.parametrize("name", usual([*derivable()], 3, 1))
 def test_the_payload_reads_back_as_the_equations(name):
     """N, nu, M, forcing, J, sigma, gamma, phi, T, V, Q and each `lhs = rhs`, through text and back
@@ -335,6 +337,7 @@ def test_every_symbol_that_is_used_is_named_in_the_nomenclature(name, method):
     assert letters <= MEANINGS.keys()
 
 
+@sampled(2)
 @pytest.mark.parametrize("name", derivable())
 def test_rendering_is_the_same_on_every_run_and_stays_readable(name):
     """No report is longer than a short chapter, whatever the size of the model and the format"""

@@ -8,7 +8,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from slow_run import usual
+from slow_run import sampled, usual
 
 import eomgen
 from eomgen.documents.figures import KINDS, kinds_of_lines
@@ -82,6 +82,7 @@ def wrong(form: str, text: str, run: Trajectory | None = None) -> list[str]:
     return [f"{check.name}: {check.detail}" for check in checks if check.status == "fails"]
 
 
+@sampled(3)
 @pytest.mark.slow
 @pytest.mark.parametrize("form", FORMS)
 def test_a_report_says_what_was_found(form: str):
@@ -115,6 +116,7 @@ acceleration = [0, -9.81]
 """
 
 
+@sampled(3)
 @pytest.mark.slow
 @pytest.mark.parametrize("form", FORMS)
 def test_a_report_of_several_verbs_says_what_was_found(form: str):

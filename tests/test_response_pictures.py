@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from slow_run import in_slow_run, sampled
 
 import eomgen
 from eomgen.cli import main
@@ -90,6 +91,7 @@ def test_values_at_the_colours_are_in_their_unit(tmp_path):
     assert sorted({*panel.points[0].values}) == pytest.approx(np.degrees([0.3, 0.4]))
 
 
+@in_slow_run
 def test_reactions_are_drawn_over_one_turn_of_the_drive(tmp_path):
     """phi = n t turns in 2 pi / n; at rates that change, or without a drive, there is no such time"""
     for name, turn in (("scotch_yoke", 2 * np.pi / 5), ("seeds/ch9_p6", None), ("four_bar", None)):
@@ -133,6 +135,7 @@ def test_the_resultant_of_a_hinge_is_the_length_of_its_force(run):
     assert np.allclose(found["crank"], np.hypot(run["reaction_x(crank)"], run["reaction_y(crank)"]))
 
 
+@sampled(2)
 @pytest.mark.parametrize("view", VIEWS)
 def test_every_view_of_a_run_is_drawn(run, view, tmp_path):
     path = tmp_path / "a.svg"

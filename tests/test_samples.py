@@ -13,6 +13,7 @@ import pytest
 from click.testing import CliRunner
 from each import each
 from scipy.interpolate import CubicSpline, PchipInterpolator
+from slow_run import sampled
 
 import eomgen
 from eomgen.cli import main
@@ -184,6 +185,7 @@ def test_the_derivation_prints_a_sampled_motion_by_its_name():
     assert solved["M"].exact == "1/6*m*l*(2*l*theta'' + 3*g*cos(theta))"
 
 
+@sampled(2)
 @pytest.mark.skipif(compiler() is None, reason="no C compiler")
 @pytest.mark.parametrize("law", LAWS)
 def test_emitted_code_follows_the_samples(tmp_path, law):

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from slow_run import beside, usual, usual_models
+from slow_run import beside, sampled, usual, usual_models
 
 import eomgen
 from eomgen.documents.figures import Picture
@@ -81,6 +81,7 @@ def scene_named(name: str) -> Scene:
     return eomgen.load(MODELS / f"{name}.toml").scene()
 
 
+@sampled(3)
 @pytest.mark.parametrize("name", [pytest.param(n, marks=() if n in SOME else pytest.mark.slow) for n in REQUESTED])
 def test_a_scene_shows_bodies_where_mechanics_has_them(name):
     """R^T R = 1, det R = 1; p + R r of a body's named points, by the data, is the position that mechanics has.
@@ -264,6 +265,7 @@ def test_a_name_finds_its_place_inside_the_picture_or_none():
     assert alone.away(other) < alone.away(own) and beside.away(own) < beside.away(other)
 
 
+@sampled(3)
 @pytest.mark.parametrize("name", [pytest.param(n, marks=() if n in SOME else pytest.mark.slow) for n in REQUESTED])
 def test_names_do_not_cover_one_another(name):
     """Of the boxes of all names in a model's picture no two meet, none leaves the picture, and there are names."""
@@ -279,6 +281,7 @@ RESULTS = {
 }
 
 
+@sampled(2)
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("verb", "name"), usual([(verb, name) for verb, names in RESULTS.items() for name in names], 2)

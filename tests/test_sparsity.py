@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hand_made import equations_of, spring_row, symbols
+from slow_run import sampled
 from tools import RUN_HERE, each_target, marked
 
 import eomgen
@@ -89,6 +90,7 @@ def whole_systems(case: str):
     return right_hand_side(made), states, found
 
 
+@sampled(4)
 @each_target
 @pytest.mark.parametrize("case", CASES)
 def test_accelerations_are_those_of_the_whole_system(target, case):
@@ -139,6 +141,7 @@ def slopes_by_differences(name: str):
     return program, x, p, np.transpose(moved)
 
 
+@sampled(2)
 @marked(name for name in RUN_HERE if name not in ("jax", "numba", "fmu"))  # which take long, by the texts of others
 @pytest.mark.parametrize("name", MANY)
 def test_many_right_sides_have_one_factorization(target, name):
@@ -325,6 +328,7 @@ def long_program(n: int):
     return program, vectors(program, count=2)
 
 
+@sampled(4)
 @each_target
 @pytest.mark.parametrize("n", [3, 20], ids=["written out", "solve"])
 def test_a_long_program_in_parts_returns_what_its_graph_does(target, n):

@@ -8,6 +8,7 @@ from fractions import Fraction
 import pytest
 from each import each
 from slider_crank import SLIDER_CRANK
+from slow_run import in_slow_run
 
 import eomgen
 from eomgen.symbolic.expression.formula import cos, sqrt
@@ -21,6 +22,7 @@ GRAPH = Graph()
 X, Y = GRAPH.symbol("x"), GRAPH.symbol("y")
 
 
+@in_slow_run
 @pytest.mark.slow
 def test_the_force_on_a_slider_at_nice_angles_is_mass_times_acceleration():
     """F = m (r w^2 cos a + r^2 w^2 cos 2a/R + r^4 w^2 sin^2 a cos^2 a/R^3), R = sqrt(L^2 - r^2 sin^2 a).

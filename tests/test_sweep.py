@@ -330,6 +330,7 @@ def test_patience_is_for_each_step_of_a_sweep(spring, tmp_path, monkeypatch):
     assert ended.exit_code == 3 and reported is not None and len(table_at(folder)) == int(reported[1]) >= 3
 
 
+@in_slow_run
 @needs_sh
 @pytest.mark.slow
 def test_workers_that_are_killed_are_replaced(spring, tmp_path):
@@ -373,6 +374,7 @@ def test_a_run_that_kills_its_worker_is_a_row(spring, monkeypatch):
     assert "died 3 times" in found["message"][13] and found["k"][13] == pytest.approx(10 + 13 * 80 / 39)
 
 
+@in_slow_run
 @pytest.mark.slow
 def test_any_executor_with_submit_gives_the_same_bits(spring):
     """Threads, a pool of processes of the user, futures that only say `done`: what one process gives."""
@@ -403,6 +405,7 @@ def test_any_executor_with_submit_gives_the_same_bits(spring):
     assert list(made.ledger.rows()) == list(alone.ledger.rows())
 
 
+@in_slow_run
 @pytest.mark.slow
 def test_dask_gives_the_same_bits(spring):
     """A cluster of processes of dask.distributed on this machine.

@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hand_made import cart_pole, pendulum, spring_row, symbols, tied_pendulum
+from slow_run import sampled
 from tools import each_target, every_target, marked, needs, tool
 
 import eomgen
@@ -103,6 +104,7 @@ def random_expression(rng: random.Random, g: Graph, leaves: list[Node], size: in
     return pool[-4:]
 
 
+@sampled(3)
 @each_target
 @pytest.mark.parametrize("seed", range(8))
 def test_random_expressions_have_the_symbols_value(target, seed):
@@ -134,6 +136,7 @@ SYSTEMS = {
 }
 
 
+@sampled(2)
 @each_target
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_a_right_hand_side_agrees_with_fifty_digits(target, name):
@@ -178,6 +181,7 @@ def test_outside_a_domain_the_value_is_not_a_number(target):
     assert np.isnan(found[0]) and np.isinf(found[1]) and found[2] == -2 and np.isinf(found[3])
 
 
+@sampled(2)
 @every_target
 def test_what_has_no_value_gives_none_to_what_is_made_of_it(target):
     """f(nan, b), f(a, nan), f(nan) are nan for every f, choices and comparisons too; what is not chosen counts not."""

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from slow_run import usual
+from slow_run import sampled, usual
 
 import eomgen
 from eomgen.codegen.build import compiler
@@ -154,6 +154,7 @@ force = ["80*sin(3*t)", 0]
 """
 
 
+@sampled(2)
 @pytest.mark.parametrize("method", ["taylor", "DOP853"])
 @pytest.mark.parametrize("name", ["sliding_ladder", "rough_incline", "stick-slip"])
 def test_contacts_change_at_instants_that_hold(name, method):
@@ -186,6 +187,7 @@ def test_without_a_compiler_the_motion_is_the_same():
     assert "Not by power series (not in C)" in other.message and own.x == pytest.approx(other.x, abs=1e-7)
 
 
+@sampled(2)
 @pytest.mark.parametrize("name", usual(["double_pendulum", "tumbling_body", "arm3", "cart_pole"], 2, 1))
 def test_runs_in_lanes_by_series_are_those_one_by_one(name):
     """Each with its own start, instants between the steps, quaternions; a lane does not know its neighbours."""

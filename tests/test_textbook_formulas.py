@@ -17,7 +17,7 @@ from golden_formulas import (
     letters_of_latex,
     letters_of_text,
 )
-from slow_run import usual
+from slow_run import sampled, usual
 
 pytestmark = [pytest.mark.slow, pytest.mark.by_model]
 
@@ -26,6 +26,7 @@ MEDIAN = 1.0
 SAME = {"cot": "tan"}  # a function that the grammar has not, by the one that stands in the text for it
 
 
+@sampled(3)
 @each("path, golden", [(golden.path, golden) for golden in golden_formulas()], by="path")
 def test_ours_says_what_the_author_says_about_as_shortly(path: Path, golden: Golden) -> None:
     """f_ours = f_his at random exact states, of an equation of motion up to a factor; in at most 1.3 times his marks.

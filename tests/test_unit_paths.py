@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
-from slow_run import usual
+from slow_run import sampled, usual
 
 import eomgen
 from eomgen.cli import main
@@ -142,6 +142,7 @@ def pendulum(tmp_path: Path) -> Path:
     return path
 
 
+@sampled(2)
 @pytest.mark.parametrize(("verb", "option"), usual([*paths()], 3, 1))
 def test_what_is_typed_is_in_the_unit_of_the_file_or_in_its_own_and_what_was_taken_is_said(verb, option, pendulum):
     """45 of an angle in deg is 45 deg; 0.8 m of a length in cm is 80 cm; on stderr and in `taken`."""

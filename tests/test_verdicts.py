@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 from each import each
-from slow_run import usual
+from slow_run import in_slow_run, sampled, usual
 
 import eomgen
 from eomgen.cli import main
@@ -155,6 +155,7 @@ def test_an_unknown_name_stays_in_the_list_with_exit_code_2():
     assert judged("F_Z = m*g*cos(theta)", "l*theta'' = g*sin(theta)")[0] == 5
 
 
+@in_slow_run
 @pytest.mark.slow
 @each(
     "equation, verdict",
@@ -330,6 +331,7 @@ outputs.N = "tension(string)"
 """
 
 
+@sampled(2)
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("text", "speed", "force", "acceleration"),

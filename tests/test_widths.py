@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 from browser import visited
-from slow_run import usual
+from slow_run import sampled, usual
 from tools import needs, tool
 
 import eomgen
@@ -100,6 +100,7 @@ def seen(name: str) -> list[Any]:
     return found
 
 
+@sampled(2)
 @needs("chromium")
 @pytest.mark.parametrize("name", [QUICK, *(pytest.param(name, marks=pytest.mark.slow) for name in usual(NAMES, 3))])
 def test_no_formula_of_a_page_is_wider_than_its_block(name: str):
@@ -118,6 +119,7 @@ def test_widths_are_those_of_a_browser():
     assert 0.93 < min(ratios) and max(ratios) < 1.07
 
 
+@sampled(2)
 @needs("pdftotext")
 @pytest.mark.parametrize("name", [QUICK, *(pytest.param(name, marks=pytest.mark.slow) for name in usual(NAMES, 3))])
 def test_nothing_of_a_paper_passes_the_margin(name: str, tmp_path: Path):

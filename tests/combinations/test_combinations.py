@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 from each import each
-from slow_run import beside, usual
+from slow_run import beside, sampled, usual
 
 sys.path.insert(0, str(Path(__file__).parent))
 
@@ -133,6 +133,7 @@ LAWS = [
 ]
 
 
+@sampled(3)
 @pytest.mark.parametrize(("table", "law"), LAWS)
 def test_an_error_in_each_law_of_the_oracle_is_noticed(monkeypatch, table, law):
     """Product and oracle agree; with the law wrong they do not."""
@@ -255,6 +256,7 @@ def test_parameters_identified_from_the_oracles_motion_are_those_of_the_model():
 FINDS = sorted((Path(__file__).parent / "finds").glob("*.toml"))
 
 
+@sampled(2)
 @pytest.mark.parametrize("path", FINDS, ids=lambda path: path.stem)
 def test_what_was_found_stays_right(path):
     """Every find, as its smallest model, does what its first line says; an open one is known to fail."""

@@ -12,7 +12,7 @@ from each import each
 from maximal import free_body_accelerations
 from moving import at, equal, state_of, written
 from random_systems import random_model
-from slow_run import usual_models
+from slow_run import sampled, usual_models
 
 import eomgen
 from eomgen.mechanics.dynamics import accelerations as articulated
@@ -82,6 +82,7 @@ def test_most_models_are_derived():
     assert len(waiting) <= 2, waiting
 
 
+@sampled(2)
 @others
 def test_every_formulation_gives_the_same_accelerations(formulation, name):
     """a of M a = forcing + J^T lam, J a + gamma = 0, against those of the first formulation, at a random state."""
@@ -90,6 +91,7 @@ def test_every_formulation_gives_the_same_accelerations(formulation, name):
     assert close(accelerations(assembled(formulation, name), system), reference)
 
 
+@sampled(2)
 @pytest.mark.parametrize(("space", "seed"), RANDOM)
 @others
 def test_every_formulation_gives_the_same_accelerations_of_random_trees(formulation, space, seed):

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hand_made import PUSHED, cart_pole, pendulum, spring_row, symbols, tied_pendulum
-from slow_run import ALL
+from slow_run import ALL, sampled
 from tools import marked, needs, tool
 
 import eomgen
@@ -93,6 +93,7 @@ def test_a_program_calls_what_comes_before_it_and_names_what_it_reads(language, 
     assert all(any(table.name in text for text in texts) for table in made.tables)
 
 
+@sampled(3)
 @marked(("cpp", "rust", "fortran", "matlab", "numba", "c"))
 @pytest.mark.parametrize("name", ["inputs", "a constraint", "closed loops"])
 def test_every_language_runs_a_program_that_is_cut_into_parts(target, name, monkeypatch):

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from hand_made import PUSHED, symbols
 from slow_run import ALL as ALL_MODELS
-from slow_run import beside
+from slow_run import beside, sampled
 from tools import marked, tool
 
 import eomgen
@@ -232,6 +232,7 @@ def test_what_does_not_move_has_code_whose_own_test_compiles(target, tmp_path):
     assert OWN_TESTS[target](tmp_path) == ""
 
 
+@sampled(3)
 @marked(name for name in OWN_TESTS if name != "fmu")
 def test_the_language_s_own_test_notices_a_wrong_sign(target, tmp_path):
     """The sign of one sum in the right-hand side turned: the test fails, and not because it cannot be read."""
@@ -246,6 +247,7 @@ def test_the_language_s_own_test_notices_a_wrong_sign(target, tmp_path):
     assert said and " not " in said, said
 
 
+@sampled(3)
 @marked(target.name for target in ALL if target.single is not None)
 def test_single_precision_passes_its_own_test_by_measured_tolerances(target, tmp_path):
     """Friction, samples of inputs: within a few 1e-6, and not by doubles: some number is 1e-9 away."""

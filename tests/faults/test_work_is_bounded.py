@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from slow_run import in_slow_run
 
 import eomgen
 from eomgen import resources
@@ -300,6 +301,7 @@ force = [1e300, "-18000*(y + sin(theta))"]
     assert "force 'front' is of the size 1e+300" in found.message
 
 
+@in_slow_run
 @pytest.mark.slow
 def test_a_long_run_that_comes_on_is_not_stopped():
     """Where the steps that are left can be taken, they are: 20 000 turns."""

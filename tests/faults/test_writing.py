@@ -18,7 +18,7 @@ from pathlib import Path
 import click
 import pytest
 from forked import forked, needs_fork
-from slow_run import usual
+from slow_run import sampled, usual
 
 from eomgen import files
 from eomgen.cli import main
@@ -187,6 +187,7 @@ class AtEachEvent:
             (self.folder / name).write_bytes(data)
 
 
+@sampled(2)
 @pytest.mark.parametrize(("verb", "option"), usual([*ways()], 6, 1))
 def test_a_fault_at_any_write_of_any_verb_leaves_whole_files(verb, option, tmp_path):
     """INT, TERM: exit code 130, all old or all new. A full disk: 74, likewise. KILL: each file whole.

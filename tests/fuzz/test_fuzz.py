@@ -16,7 +16,7 @@ import fuzzed_expressions
 import fuzzed_verbs
 import mutated_models
 import pytest
-from slow_run import usual
+from slow_run import sampled, usual
 
 pytestmark = pytest.mark.slow
 
@@ -70,6 +70,7 @@ def open_finds() -> list[tuple[str, str]]:
     return [(command, text) for law, command, text in map(read, REGRESSIONS) if law.startswith("# open: ")]
 
 
+@sampled(3)
 @pytest.mark.parametrize("path", REGRESSIONS, ids=lambda path: path.stem)
 def test_what_was_found_once_does_not_come_back(path, tmp_path, monkeypatch, request):
     """The law that each file broke; one that is open may still break it."""

@@ -21,6 +21,21 @@ in_slow_run = pytest.mark.skipif(not ALL, reason="of the slow run")
 """The mark of one dear example of a law that others hold in every run."""
 
 
+def sampled(every: int) -> pytest.MarkDecorator:
+    """The mark of a law that the usual run asks of each `every`-th of its cases; the slow run asks it of all."""
+    return pytest.mark.sampled(every)
+
+
+def left_out(items: Iterable[pytest.Item]) -> list[pytest.Item]:
+    """The cases of sampled laws that the usual run leaves out."""
+    cases: dict[str, list[pytest.Item]] = {}
+    for item in items:
+        if item.get_closest_marker("sampled") is not None:
+            cases.setdefault(item.nodeid.partition("[")[0], []).append(item)
+    every = {law: found[0].get_closest_marker("sampled").args[0] for law, found in cases.items()}  # type: ignore[union-attr]
+    return [] if ALL else [item for law, found in cases.items() for k, item in enumerate(found) if k % every[law]]
+
+
 def usual(items: Sequence[Item], every: int, first: int = 0) -> Sequence[Item]:
     """Each `every`-th item from the `first` on; in the slow run all of them."""
     return items if ALL else items[first::every]

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from derivations import equations as equations_of
 from derivations import moving
+from slow_run import sampled
 
 import eomgen
 from eomgen.equations import Equations
@@ -52,6 +53,7 @@ def derived(name: str) -> Equations:
     return eomgen.derive(eomgen.load(next(MODELS.rglob(f"{name}.toml"))))
 
 
+@sampled(3)
 @pytest.mark.parametrize("path", moving(), ids=lambda path: path.stem)
 def test_the_certificate_holds_for_every_model(path):
     """Three routes, the poses, the free bodies, the energy theorem and the emitted code agree."""
@@ -89,6 +91,7 @@ def mutants(equations: EquationsOfMotion):
             yield field, replace(equations, **{field: wrong})
 
 
+@sampled(2)
 @pytest.mark.parametrize("name", SMALL)
 def test_a_wrong_sign_in_any_term_turns_it_red(name):
     """One term of one entry of M, c, Q, forcing, J, sigma, gamma, N, nu, T or V with the other sign."""

@@ -16,7 +16,7 @@ from answers_of_chapters_16_17 import ANSWERS, NUMBERS_ONLY, OTHER_NUMBERS
 from derivations import answers as answers_of
 from derivations import model_path
 from each import each
-from slow_run import usual
+from slow_run import in_slow_run, usual
 
 import eomgen
 from eomgen.symbolic.expression.graph import Graph
@@ -142,6 +142,7 @@ def test_a_particle_that_friction_can_hold_stays():
     assert not held["v_return_to_A"].answered and held["v_return_to_A"].message
 
 
+@in_slow_run
 def test_a_wire_that_stays_taut_has_no_place_where_it_is_slack():
     """v0^2 > 5 g l: the tension never vanishes, and the answer says so.
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from by_hand import Collection, Free, Known, agree, balance, differences, meeting
 from mpmath import asin, atan2, cos, sin, sqrt
-from slow_run import usual
+from slow_run import sampled, usual
 
 pytestmark = pytest.mark.slow
 
@@ -540,6 +540,7 @@ def chebyshev_line(n, alpha, b0, c0):
     return Known({"x": p[0], "y": p[1], "vx": v[0], "vy": v[1], "ax": a[0], "ay": a[1], "rho": rho})
 
 
+@sampled(3)
 @pytest.mark.parametrize("name", usual(list(SYSTEMS), 4))
 def test_a_driven_mechanism_moves_and_pushes_as_by_hand(name):
     """Velocities and accelerations by differences of places in 40 digits, forces by the balance of every body."""

@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from each import each
-from slow_run import usual
+from slow_run import sampled, usual
 
 import eomgen
 from eomgen.documents import rendered
@@ -595,6 +595,7 @@ stiffness = "k"
 ENDS = [(end, L) for end in (FLOOR, THREAD) for L in (0.05, 0.5)]
 
 
+@sampled(3)
 @pytest.mark.parametrize("start", ["0", "{ start = 0, speed = 1 }", "0.06"])
 @pytest.mark.parametrize(("end", "L"), ENDS, ids=["floor", "above floor", "thread", "slack thread"])
 @pytest.mark.parametrize("carried", ["", RIDER], ids=["alone", "carrying"])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from by_hand import Collection, Free, Known, agree, balance
 from scipy.integrate import solve_ivp
-from slow_run import usual
+from slow_run import sampled, usual
 
 pytestmark = pytest.mark.slow
 
@@ -602,6 +602,7 @@ def huygens_pendulum(a, m, g, q0):
     return Known({"down": np.pi / (2 * w), "fast": 4 * a * s * w}, {}, (w,), 3, run)
 
 
+@sampled(3)
 @pytest.mark.parametrize("name", usual([*SYSTEMS], 2))
 def test_a_free_motion_is_the_one_by_hand(name):
     """Accelerations, reactions, frequencies and the place at the end of a run, each by its own law."""

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from each import each
 from scipy.integrate import solve_ivp
+from slow_run import in_slow_run
 
 import eomgen
 from eomgen.codegen.program import right_hand_side
@@ -336,6 +337,7 @@ def test_the_instant_in_closed_form_is_the_one_located(name):
         assert math.isnan(number) or evaluate((x,), values, FLOAT)[0] == pytest.approx(number, rel=1e-8, abs=1e-8)
 
 
+@in_slow_run
 @each("name", KNOWN)
 def test_the_numbers_are_those_of_an_integration_and_keep_the_energy(name):
     """The state of scipy's integration at the same time; E = E(start) also where the time is not known."""

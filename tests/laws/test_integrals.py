@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from each import each
 from scipy.integrate import solve_ivp
+from slow_run import in_slow_run
 
 import eomgen
 from eomgen.codegen.program import right_hand_side
@@ -413,6 +414,7 @@ LAWS = {name: BLOCK.replace("FORCES", forces) for name, forces in FORCES.items()
 }
 
 
+@in_slow_run
 @each("name", LAWS)
 def test_laws_of_motion_are_the_motion(name):
     """q(t) and u(t) in closed form against an integration in time."""
@@ -523,6 +525,7 @@ def test_momenta_of_the_whole_stay_though_no_coordinate_is_cyclic(space):
     assert L == pytest.approx(np.full_like(L, 1.2), rel=1e-8)
 
 
+@in_slow_run
 def test_jacobis_integral_is_found_beside_a_root():
     """A bead on a spring in a tube that turns steadily: r' ^2/2 - Om^2 r^2/2 + V stays, with the length a root."""
     text = """

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 from random_systems import random_model
-from slow_run import usual
+from slow_run import sampled, usual
 
 import eomgen
 from eomgen.cli import main
@@ -111,6 +111,7 @@ def test_the_recursion_gives_what_the_twists_of_the_bodies_give(name):
     agrees_with_projection(load(name))
 
 
+@sampled(3)
 @pytest.mark.parametrize("seed", range(12))
 @pytest.mark.parametrize("space", ["plane", "space"])
 def test_the_recursion_gives_the_same_for_random_trees(space, seed):

@@ -11,7 +11,7 @@ import pytest
 from click.testing import CliRunner
 from each import each
 from matplotlib.text import Text
-from slow_run import ALL
+from slow_run import ALL, sampled
 
 import eomgen
 from eomgen.cli import main
@@ -55,6 +55,7 @@ def words(step: Step) -> Iterator[str]:
             assert isinstance(statement, (Formula, Lines))
 
 
+@sampled(2)
 @pytest.mark.by_model
 @pytest.mark.parametrize("name", NAMES if ALL else USUAL[::2])
 def test_no_sentence_stays_english(name):

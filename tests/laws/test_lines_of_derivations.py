@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 from each import each
-from slow_run import ALL
+from slow_run import ALL, sampled
 
 import eomgen
 from eomgen.cli import main
@@ -52,6 +52,7 @@ def judge_of(model: Path | str) -> Judge:
     return Judge(Case(model_to_study(model_at(model) if isinstance(model, Path) else eomgen.loads(model))))
 
 
+@sampled(2)
 @pytest.mark.slow
 @pytest.mark.by_model
 @pytest.mark.parametrize("name, verb", CASES)
@@ -78,6 +79,7 @@ def _is_condition(verb: str, reason: str, text: str) -> bool:
     return small or (verb == "statics" and ("none is found" in reason or text.startswith("F_")))
 
 
+@sampled(2)
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ("simple_pendulum", "cart_pole"))
 def test_no_line_with_another_number_or_sign_is_right(name):

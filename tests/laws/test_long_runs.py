@@ -10,7 +10,7 @@ import pytest
 from float_loops import bricard
 from scipy.integrate import solve_ivp
 from scipy.special import ellipj, ellipk
-from slow_run import usual
+from slow_run import in_slow_run, sampled, usual
 
 import eomgen
 from eomgen.codegen.rhs import parameter_vector
@@ -204,6 +204,7 @@ def test_the_simple_pendulum_of_the_benchmark_library():
     assert np.ptp(found.energy) < 5e-8 and found.gap < 1e-9
 
 
+@in_slow_run
 def test_bricards_mechanism_of_the_benchmark_library():
     """A04 for its 10 s: energy and loop kept; three seconds of it as free bodies on hinges move, by least squares."""
     with pytest.warns(RuntimeWarning, match="indeterminate"):
@@ -218,6 +219,7 @@ def test_bricards_mechanism_of_the_benchmark_library():
     assert found.x[:31] == pytest.approx(oracle, abs=1e-5)
 
 
+@in_slow_run
 @pytest.mark.parametrize("method", ["BDF", "DOP853"])
 def test_the_stiff_flyball_governor_of_the_benchmark_library(method):
     """A05 for its 10 s: slider and rods by Lagrange's equations with H = I(alpha) phi' known, the shaft by H."""
@@ -249,6 +251,7 @@ def test_the_stiff_flyball_governor_of_the_benchmark_library(method):
     assert found["phi'"] == pytest.approx(H / spin(alpha), abs=2e-5)
 
 
+@sampled(2)
 @pytest.mark.parametrize("tolerance", usual([1e-8, 1e-9, 1e-10, 1e-12], 2))
 def test_change_points_of_the_benchmark_library_are_crossed_at_any_tolerance(tolerance):
     """A02 for its 10 s, through every position in line: T + V of the one pendulum that it is, and the loops closed."""
@@ -282,6 +285,7 @@ joint = { kind = "revolute", at = "D", angle = "ga" }
 THERE = {"al": 1.3915198690941, "be": -0.1427471208401, "ga": 1.8290108299821}  # mpmath, two step widths agree to 1e-13
 
 
+@sampled(3)
 @pytest.mark.parametrize("tolerance", [1e-9, 1e-11, 1e-13])
 def test_four_dead_centres_of_dependent_coordinates_cost_no_accuracy(tolerance):
     """At the dead centre of rod two det J_d = 0; the error at 3 s follows the tolerance all the same."""

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from float_loops import Chain, Closing, Link, bricard
 from scipy.integrate import solve_ivp
-from slow_run import usual
+from slow_run import in_slow_run, sampled, usual
 
 import eomgen
 from eomgen.mechanics.start.assembly_modes import Branches
@@ -54,6 +54,7 @@ def test_a_loop_that_no_formula_lets_move_has_one_freedom(name):
     assert len(found.redundant) == redundant and len(eomgen.derive(model(name)).speeds) == speeds
 
 
+@sampled(2)
 @pytest.mark.parametrize("target", ["numpy", "c"])
 @pytest.mark.parametrize("name", CHAINS)
 def test_accelerations_are_those_of_the_free_bodies_and_their_hinges(name, target):
@@ -74,6 +75,7 @@ def test_energy_stays_and_the_loop_keeps_closed(name):
     assert run.ok and run.drift < 1e-6 and run.gap < 1e-9 and run.gap_rate < 1e-8
 
 
+@sampled(2)
 @pytest.mark.parametrize("name", [*CHAINS, "spatial_four_bar", "n_four_bar"])
 def test_the_certificate_holds(name):
     assert eomgen.derive(model(name)).certify().ok
@@ -173,6 +175,7 @@ def test_a_start_that_is_far_off_is_refused():
         Start.of(eomgen.derive(eomgen.loads(far)).system)
 
 
+@in_slow_run
 def test_a_start_that_was_changed_is_told(run_verb):
     """On stderr and in --json."""
     path = MODELS / "bennett.toml"

@@ -12,6 +12,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from slow_run import in_slow_run
 
 import eomgen
 from eomgen.errors import EomgenError
@@ -575,6 +576,7 @@ later = { value = "a'", at = "a = -0.3" }
 """
 
 
+@in_slow_run
 def test_an_answer_in_a_change_point_is_that_of_the_branch_which_the_motion_is_on():
     """Folded flat, a pair could spin with the plate at rest. z = 2 sin(a), V = 8 g sin(a).
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from bodies_apart import Closure, Machine, Part, closed, rates_that_stay, text_of
-from slow_run import usual
+from slow_run import in_slow_run, sampled, usual
 
 import eomgen
 from eomgen.mechanics.constraints import elimination
@@ -100,6 +100,7 @@ def states_of(name: str) -> list[tuple[np.ndarray, np.ndarray]]:
     return found
 
 
+@sampled(2)
 @pytest.mark.slow
 @pytest.mark.parametrize("dependent", [False, True], ids=["multipliers", "dependent"])
 @pytest.mark.parametrize("name", MACHINES)
@@ -202,6 +203,7 @@ def test_a_slewing_base_with_a_dependent_loop_keeps_its_angular_momentum(text):
     assert found.certify().ok
 
 
+@in_slow_run
 @pytest.mark.slow
 @pytest.mark.parametrize("text", usual([SLEWING, IN_GROUND_AXES], 2))
 def test_determinate_reactions_do_not_hang_on_redundant_rows(text):

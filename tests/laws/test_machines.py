@@ -12,7 +12,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from slow_run import ALL, usual
+from slow_run import ALL, sampled, usual
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "combinations"))
 
@@ -36,6 +36,7 @@ def test_there_are_thirty_machines_and_each_says_what_it_is():
     assert all(path.read_text(encoding="utf-8").startswith("# ") for path in MACHINES.values())
 
 
+@sampled(3)
 @pytest.mark.slow
 @pytest.mark.parametrize("name", REQUESTED)
 def test_a_machine_moves_as_free_bodies_do(name):
@@ -46,6 +47,7 @@ def test_a_machine_moves_as_free_bodies_do(name):
     assert not found.faults
 
 
+@sampled(3)
 @pytest.mark.slow
 @pytest.mark.parametrize("name", usual([*MACHINES], 8))
 def test_what_is_said_of_a_machine_is_one_number_and_proven(name):

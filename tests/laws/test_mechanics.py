@@ -10,7 +10,7 @@ import derivations
 import numpy as np
 import pytest
 from derivations import LARGE, moving
-from slow_run import usual
+from slow_run import sampled, usual
 
 import eomgen
 from eomgen.equations import Equations
@@ -83,6 +83,7 @@ def test_forcing_is_Q_minus_c(equations):
     assert equal_at_random_states((f, Q - c) for f, Q, c in zip(graph.forcing, graph.Q, graph.c, strict=True)).equal
 
 
+@sampled(3)
 @pytest.mark.parametrize("name", sorted({*usual([path.stem for path in moving()], 3), *LARGE}))
 def test_the_emitted_code_gives_the_accelerations_of_the_symbols(name):
     """rhs(t, x, p) = (N u + nu, a) with M a = forcing + J^T lam, J a + gamma = 0, in C.

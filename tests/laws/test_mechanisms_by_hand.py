@@ -10,7 +10,7 @@ import mpmath
 import pytest
 from mpmath import asin, atan2, cos, mpf, pi, sin, sqrt
 from oracle_of_chapters_9_10 import DIGITS, length, motion, rate, slowest, turned
-from slow_run import usual
+from slow_run import sampled, usual
 
 import eomgen
 
@@ -113,6 +113,7 @@ def slewing_crane() -> Found:
     }
 
 
+@sampled(3)
 @pytest.mark.parametrize("book", [quick_return, epicyclic_gear, slewing_crane])
 def test_a_model_of_the_folder_moves_as_drawn_by_hand(book):
     with mpmath.workdps(DIGITS):

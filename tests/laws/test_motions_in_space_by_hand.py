@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from by_hand import Collection, Known, agree
 from scipy.integrate import solve_ivp
-from slow_run import usual
+from slow_run import sampled, usual
 
 pytestmark = pytest.mark.slow
 
@@ -381,6 +381,7 @@ def plate_on_a_universal_joint(m, A, B, C, l, g):
     return Known({}, {}, [np.sqrt(m * g * l / A), np.sqrt(m * g * l / B)], 1, run)
 
 
+@sampled(2)
 @pytest.mark.parametrize("name", usual([*SYSTEMS], 3, 2))
 def test_a_motion_in_space_is_the_one_by_hand(name):
     """Accelerations, couples, frequencies and the place at the end of a run, each by its own law."""

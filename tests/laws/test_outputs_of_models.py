@@ -14,7 +14,7 @@ import pytest
 from derivations import answers as answers_of
 from derivations import loaded as loaded_model
 from derivations import model_path
-from slow_run import usual_models
+from slow_run import sampled, usual_models
 
 import eomgen
 from eomgen.symbolic.expression.graph import Graph
@@ -123,6 +123,7 @@ def test_the_ladder_takes_its_time_to_the_wall():
     assert answers["t_leaves"].value == pytest.approx(float(mpmath.quad(slowness, [0, end])), rel=1e-9)
 
 
+@sampled(3)
 @pytest.mark.parametrize("path", usual_models(sorted(MODELS.glob("*.toml")), 1), ids=lambda path: path.stem)
 def test_the_outputs_of_every_classic_are_answered(path):
     """Exactly or as a number."""

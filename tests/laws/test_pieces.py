@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from slow_run import in_slow_run, sampled
 
 import eomgen
 from eomgen.documents.text import render
@@ -185,6 +186,7 @@ def test_an_answer_by_the_energy_of_a_bungee_is_refused_where_its_cord_is_taut(t
     assert "while abs(y) <= L0" in found.message and "leaves that at t = 1.35" in found.message
 
 
+@in_slow_run
 @pytest.mark.slow
 def test_an_answer_by_the_energy_is_given_only_if_the_motion_stays_in_its_piece(tmp_path):
     """A pendulum on a cart between two buffers: p_x stays while the cart touches neither, and it comes to one."""
@@ -273,6 +275,7 @@ def test_what_begins_later_has_no_law_of_motion_in_closed_form(tmp_path):
     assert laws_of_motion(phase.system, phase.accelerations, declared_start(phase.system)) == {}
 
 
+@sampled(2)
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("written", "verdict", "up_to"),
@@ -296,6 +299,7 @@ def test_a_verdict_says_in_which_piece(written, verdict, up_to, tmp_path):
 # -- samples ---------------------------------------------------------------------------------------
 
 
+@in_slow_run
 @pytest.mark.slow
 def test_beside_samples_neither_energy_nor_jacobi_s_integral_stays(tmp_path):
     """A bead on an arm that turns by samples: dH/dt = -dT/dt of what moves by itself, which is at no steady rate."""
@@ -328,6 +332,7 @@ outputs = { y0 = { value = "y", at = "equilibrium" }, z0 = { value = "z", at = "
 """
 
 
+@in_slow_run
 @pytest.mark.slow
 def test_a_place_of_rest_is_exact_only_as_a_function_of_the_parameters(tmp_path):
     """sin(q y) = 0 at y = 3 pi/q, which is pi at q = 3 alone."""

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from slow_run import in_slow_run
 
 import eomgen
 
@@ -50,6 +51,7 @@ def test_it_is_proved(equations):
     assert equations.certify("c").ok
 
 
+@in_slow_run
 def test_what_the_drives_do_and_the_dampers_take_is_what_it_gains(equations):
     """T + V at the end = T + V at the start + the work of the drives, less that of the dampers."""
     run = eomgen.simulate(equations.model, time=0.5, rtol=1e-10, atol=1e-10)

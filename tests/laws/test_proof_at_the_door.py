@@ -10,7 +10,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from slow_run import usual
+from slow_run import sampled, usual
 
 import eomgen
 from eomgen.documents.document import Document
@@ -31,6 +31,7 @@ def document(verb: str, path: Path) -> Document | None:
         return None
 
 
+@sampled(2)
 @pytest.mark.slow
 @pytest.mark.parametrize("path", REQUESTED, ids=lambda path: path.stem)
 def test_nothing_that_leaves_is_contradicted(path: Path):

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 from forked import needs_sh
-from slow_run import beside
+from slow_run import beside, sampled
 from tools import each_target, every_target
 
 import eomgen
@@ -41,6 +41,7 @@ def failing(found) -> set[str]:
     return {check.name for check in found.certify().checks if check.status == "fails"}
 
 
+@sampled(2)
 @each_target
 @pytest.mark.parametrize("name", [*beside("cart_pole"), "four_bar"])  # the other is asked below, role by role
 def test_every_function_that_is_written_is_run(target, name):
@@ -60,6 +61,7 @@ def test_redundant_ties_that_contradict_one_another_say_nothing_of_the_code():
     assert certificate.ok and reactions.status == "holds", str(certificate)
 
 
+@sampled(3)
 @each_target
 @pytest.mark.parametrize("first", range(2))
 def test_a_wrong_letter_in_a_file_is_seen_there_and_in_no_other(target, first):
@@ -121,6 +123,7 @@ joint = { kind = "revolute", angle = "lambda", torque = 1 }
 """
 
 
+@sampled(3)
 @every_target
 def test_nothing_that_a_model_says_is_executed_when_its_files_are_run(target, tmp_path):
     """Names and remarks of a stranger stand in headers and comments; no quote and no line end leaves them."""

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 from forked import needs_sh
-from slow_run import usual
+from slow_run import in_slow_run, usual
 
 import eomgen
 from eomgen.cli import main
@@ -195,6 +195,7 @@ def test_a_column_of_reactions_that_is_wrong_is_seen(name):
     assert failing(replace(run, reactions=columns)) == {"columns of reactions are those of the free bodies"}
 
 
+@in_slow_run
 def test_rows_that_pull_are_proven_with_their_power():
     """Baumgarte's rows take power lam . (J u + sigma) where constraints are open; the equations themselves hold as
     derived."""

@@ -246,6 +246,7 @@ damper = { kind = "damper", points = ["O", "three.end"], damping = "c" }
 """
 
 
+@in_slow_run
 def test_the_four_bar_with_a_diagonal_spring_rests_where_the_benchmark_says():
     """phi = 2.23433101898: the IFToMM library's problem of this name, as B. Minaker's EoM has it; M, C, K by hand.
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import pytest
 from random_systems import random_model
-from slow_run import usual
+from slow_run import sampled, usual
 
 import eomgen
 from eomgen.proof.check import Certificate
@@ -17,6 +17,7 @@ from eomgen.proof.check import Certificate
 pytestmark = pytest.mark.slow
 
 
+@sampled(2)
 @pytest.mark.parametrize("seed", usual(range(30), 6))
 @pytest.mark.parametrize("space", ["plane", "space"])
 def test_the_certificate_holds_for_random_trees_with_ties(space, seed):
@@ -30,6 +31,7 @@ def certificate_of(text: str) -> Certificate:
     return eomgen.derive(eomgen.loads(text)).certify()
 
 
+@sampled(3)
 @pytest.mark.parametrize("seed", usual(range(60), 6))
 @pytest.mark.parametrize("space", ["plane", "space"])
 def test_the_certificate_holds_for_random_trees(space, seed):

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from slow_run import sampled
 
 import eomgen
 
@@ -54,6 +55,7 @@ acceleration = [0, 0, "-g"]
 SLIP = np.array([2.5, 3.0])
 
 
+@sampled(2)
 @pytest.mark.parametrize(
     ("friction", "force"),
     [
@@ -110,6 +112,7 @@ acceleration = [0, 0, "-g"]
 """
 
 
+@sampled(2)
 @pytest.mark.parametrize(
     "more",
     [

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from slow_run import in_slow_run
 
 import eomgen
 
@@ -180,6 +181,7 @@ def multiplier_motion(mass, force, rows, x0, T):
     return x
 
 
+@in_slow_run
 def test_a_snakeboard_is_moved_by_its_rider():
     """Maximal equations of board, flywheel and wheels in x, y, theta with two knife edges, by plain numpy."""
     m, J, J_r, J_w, reach = 6, 0.016, 0.072, 0.0013, 0.2
@@ -207,6 +209,7 @@ def test_a_snakeboard_is_moved_by_its_rider():
     assert [run[name][-1] for name in ("x", "y", "theta", "theta'")] == pytest.approx([*end[:3], end[5]], rel=1e-7)
 
 
+@in_slow_run
 def test_a_roller_racer_is_moved_by_its_handlebar():
     """Seat with mass, handlebar with a moment of inertia alone, two knife edges; phi(t) given; by plain numpy."""
     m, I_1, I_2, l_1, l_2 = 40, 2, 0.3, 0.5, 0.2

@@ -8,7 +8,7 @@ from pathlib import Path
 import mpmath
 import numpy as np
 import pytest
-from slow_run import beside, in_slow_run
+from slow_run import beside, in_slow_run, sampled
 
 import eomgen
 from eomgen.sensitivities.derivatives import slope_requested
@@ -127,6 +127,7 @@ def test_a_right_hand_side_has_its_slopes_in_closed_form():
 # -- laws ----------------------------------------------------------------------------------------------------
 
 
+@sampled(2)
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "of", "to"),
@@ -148,6 +149,7 @@ def test_derivatives_are_those_of_the_whole_computation(name, of, to):
     assert len(slopes) == len(found.slopes) and not found.failed
 
 
+@sampled(2)
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "to", "time"),

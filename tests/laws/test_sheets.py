@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 from each import each
-from slow_run import ALL
+from slow_run import ALL, sampled
 from tools import needs
 
 import eomgen
@@ -76,6 +76,7 @@ def written(name: str, audience: str, ending: str, folder: Path) -> list[Path]:
     return [path for path in folder.iterdir() if path.suffix in (".svg", ending)]
 
 
+@sampled(2)
 @pytest.mark.by_model
 @pytest.mark.parametrize("name", SEARCHED)
 def test_no_answer_is_in_a_sheet(name, tmp_path):

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from float_space import Joint, Tree, jacobi, limits_of_nutation, of_quaternion, platform_of_delta, turn
-from slow_run import usual
+from slow_run import in_slow_run, usual
 
 import eomgen
 from eomgen.equations import Equations
@@ -396,6 +396,7 @@ def governed(tree: Tree, x: np.ndarray) -> np.ndarray:
     return np.concatenate([u, tree.accelerations(q, u, Q)])
 
 
+@in_slow_run
 def test_the_stiff_governor_moves_as_a_stiff_solver_says():
     """The data of A05, no reference solution of it: the state after 0.1 s by Radau on the textbook's equations."""
     from scipy.integrate import solve_ivp

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
-from slow_run import usual
+from slow_run import sampled, usual
 
 import eomgen
 from eomgen.cli import main
@@ -109,6 +109,7 @@ def test_what_was_typed_is_kept_where_the_ties_allow_it(typed):
     assert run["assembled"] and run["said"] == [f"The start was {run['assembled']}."]
 
 
+@sampled(3)
 def test_every_verb_begins_at_the_same_start(typed):
     """check, solve, reactions and kinematics give of the start what the first row of a run gives, and say the same."""
     path, words, run = typed

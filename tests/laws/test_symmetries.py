@@ -14,7 +14,7 @@ from random import Random
 
 import numpy as np
 import pytest
-from slow_run import usual, usual_models
+from slow_run import sampled, usual, usual_models
 from transformed_models import (
     SCALES,
     Tables,
@@ -90,6 +90,7 @@ def assert_same(there: dict[str, tuple[float, ...]], here: dict[str, tuple[float
         assert np.allclose(there[name], values, rtol=0, atol=1e-8 * scale), name
 
 
+@sampled(3)
 @pytest.mark.parametrize(("path", "how"), list(pairs()), ids=lambda x: x.stem if isinstance(x, Path) else x)
 def test_the_same_mechanism_has_the_same_accelerations(path, how):
     """u'(R model) = u'(model): no law hangs on where the ground's origin and axes, or a body's, are."""

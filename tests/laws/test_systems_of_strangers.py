@@ -15,7 +15,7 @@ import oracles_at_rest_and_linkages
 import oracles_of_machines
 import oracles_of_motions
 import pytest
-from slow_run import usual
+from slow_run import sampled, usual
 
 import eomgen
 
@@ -39,6 +39,7 @@ def answers(model: eomgen.Model, run: dict[str, float] | None) -> dict[str, floa
     return last | {name: quantity.value for name, quantity in found.quantities.items()}
 
 
+@sampled(2)
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=() if name in QUICK else pytest.mark.slow) for name in usual([*SYSTEMS], 2)]
 )

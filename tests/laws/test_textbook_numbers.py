@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from mpmath import mp
 from scipy.integrate import solve_ivp
+from slow_run import in_slow_run
 
 import eomgen
 from eomgen.mechanics.dynamics.system import system_of
@@ -125,6 +126,7 @@ def angles_of_leg(q: np.ndarray, th: float) -> np.ndarray:
     return q
 
 
+@in_slow_run
 def test_bars_without_mass_are_kept_closed():
     """One turn of a strandbeest's crank in its own lengths; no body has mass, so that nothing measures a change."""
     run = eomgen.simulate(eomgen.loads(LEG), time=1)

@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 from lagrange import Frame, accelerations, numbers
-from slow_run import usual
+from slow_run import sampled, usual
 from textbook import SYSTEMS
 
 import eomgen
@@ -46,6 +46,7 @@ def of_the_model(equations, frame, q) -> np.ndarray:
     return np.array([by_name[name] for name in equations.coordinates])
 
 
+@sampled(3)
 @pytest.mark.parametrize(
     ("name", "target"), usual([(name, target) for target in ("numpy", "c") for name in SYSTEMS], 2)
 )

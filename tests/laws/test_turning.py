@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from each import each
 from scipy.spatial.transform import Rotation
+from slow_run import in_slow_run
 
 import eomgen
 from eomgen.documents import rendered
@@ -127,6 +128,7 @@ def frequencies(found) -> list[float]:
 # -- rest ----------------------------------------------------------------------------------------
 
 
+@in_slow_run
 def test_a_body_on_a_ball_joint_hangs_or_stands():
     """Two families of rest, V = -+m g d; below it swings with w^2 = m g d/A, twice."""
     resting = eomgen.statics(eomgen.loads(TOP % (0.1, 1, 0.1, 0, 0)))

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from slow_run import usual
+from slow_run import in_slow_run, usual
 
 import eomgen
 
@@ -69,6 +69,7 @@ def test_the_track_of_the_wheels_follows_the_modes():
         assert s * q["y"] == pytest.approx(v * q["psi"] + r * s * q["phi"], abs=1e-9)
 
 
+@in_slow_run
 def test_a_run_that_starts_straight_stays_regular():
     """zero steer divides nothing by zero: the wheels carry the weight, and energy stays"""
     model = eomgen.load(MODEL)
