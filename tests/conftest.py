@@ -11,11 +11,13 @@ import shutil
 import sys
 import warnings
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import NoReturn
 
 import pytest
 from hypothesis import settings
+from hypothesis.internal.conjecture import providers
 from quick_set import is_slow, model_of
 from slow_run import left_out
 
@@ -32,6 +34,9 @@ settings.register_profile(
     "fixed", derandomize=True, deadline=None
 )  # a drawn formula that sympy needs minutes for came once
 settings.load_profile("fixed")
+
+with suppress(AttributeError):  # it would parse all modules of ours, for half a minute, to draw their constants
+    providers._get_local_constants = lambda: providers._local_constants  # type: ignore[attr-defined]
 
 COLLECTED = ("test_gc_pause.py", "test_public_values.py")
 ZERO = b"\0after"

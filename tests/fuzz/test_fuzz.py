@@ -25,7 +25,7 @@ REGRESSIONS = sorted((Path(__file__).parent / "regressions").iterdir())
 SEED, EXPRESSIONS, LOADS, VERBS, SHARES = 12, 10_000, 5_000, 300, 10
 
 
-@pytest.mark.parametrize("share", usual(range(SHARES), 5))
+@pytest.mark.parametrize("share", usual(range(SHARES), 10))
 def test_any_formula_means_what_it_says_prints_and_reads_back_or_is_refused_at_its_place(share):
     """parse(text) = the tree that wrote it, parse(print(parse(text))) = parse(text), at 50 digits; else a refusal."""
     rng = Random(f"expressions {SEED} {share}")
@@ -34,7 +34,7 @@ def test_any_formula_means_what_it_says_prints_and_reads_back_or_is_refused_at_i
         assert not fuzzed_expressions.broken_law(text, tree), repr(text)
 
 
-@pytest.mark.parametrize("share", usual(range(SHARES), 5))
+@pytest.mark.parametrize("share", usual(range(SHARES), 10))
 def test_any_file_is_a_model_or_a_list_of_problems_at_their_places(share):
     """loads(text) gives a Model or a ModelError, soon; each problem has its line and column and is told once."""
     rng = Random(f"loads {SEED} {share}")
@@ -43,7 +43,7 @@ def test_any_file_is_a_model_or_a_list_of_problems_at_their_places(share):
         assert not mutated_models.broken_law(text), text
 
 
-@pytest.mark.parametrize("share", usual(range(SHARES), 5))
+@pytest.mark.parametrize("share", usual(range(SHARES), 10))
 def test_any_verb_ends_in_its_result_or_a_sentence(share, tmp_path, monkeypatch):
     """Within its --patience, with a code of the table; --json is JSON; the proof of what loads and derives holds."""
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
+from slow_run import sampled
 
 import eomgen
 from eomgen.mechanics.free_bodies.friction import SystemFriction
@@ -377,6 +378,7 @@ SAMPLES = {f"plane {name}": HEAD.format("plane") + text for name, text in PLANE.
 SAMPLES |= {f"space {name}": HEAD.format("space") + text for name, text in SPACE.items()}
 
 
+@sampled(3)
 @pytest.mark.parametrize("name", SAMPLES)
 def test_every_field_of_every_kind_is_derived_by_two_routes(name):
     """M, c and Q by energies, by projection and by recursion are equal at random exact states; then the free bodies."""

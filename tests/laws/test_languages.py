@@ -11,7 +11,7 @@ import pytest
 from click.testing import CliRunner
 from each import each
 from matplotlib.text import Text
-from slow_run import ALL, sampled
+from slow_run import ALL, sampled, usual
 
 import eomgen
 from eomgen.cli import main
@@ -77,7 +77,8 @@ def test_no_sentence_stays_english(name):
 
 @pytest.mark.parametrize("language", OTHERS if ALL else OTHERS[:1])
 def test_a_report_in_another_language_is_proven_and_its_formulas_are_the_same(language, tmp_path):
-    for name, method in (("slider_crank", "kinetostatic"), ("conker", "lagrange"), ("gerber_beam", "lagrange")):
+    models = (("slider_crank", "kinetostatic"), ("conker", "lagrange"), ("gerber_beam", "lagrange"))
+    for name, method in usual(models, 3, 1):
         ours, theirs = (report(MODELS / f"{name}.toml", method=method, language=each) for each in ("en", language))
         assert theirs.certificate is not None and theirs.certificate.ok
         formulas = [
@@ -86,7 +87,7 @@ def test_a_report_in_another_language_is_proven_and_its_formulas_are_the_same(la
             for each in (ours, theirs)
         ]  # fmt: skip
         assert formulas[0] == formulas[1] and len(formulas[0]) > 4
-    for ending in (".html", ".tex", ".md"):
+    for ending in usual((".html", ".tex", ".md"), 3):
         found = report(
             MODELS / "cart_pole.toml", tmp_path / f"r{ending}", language=language, without=["motion", "plots"]
         )
