@@ -72,7 +72,7 @@ def test_the_answers_of_python_are_drawn_as_those_of_the_verb():
         rendered(reported, form) for form in ("text", "latex", "markdown")
     ]
     assert str(found).startswith("kinetic_energy  = ") and r"\dot{\theta}^{2}" in found.latex()
-    assert found.as_dict()["outputs"]["Q_theta"]["exact"] == found["Q_theta"].exact == "6*M*R*g*sin(theta)"
+    assert found.as_dict()["outputs"]["Q_theta"]["exact"] == found["Q_theta"].exact == "6*M*g*R*sin(theta)"
 
 
 def test_an_equation_of_numbers_alone_is_printed():

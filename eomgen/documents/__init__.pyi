@@ -55,8 +55,6 @@ from eomgen.documents.drawing_on_a_page import flat_drawing as flat_drawing
 # M a + c = Q + J^T lam, row by row
 from eomgen.documents.equation_steps import sides_of as sides_of
 from eomgen.documents.figures import KINDS as KINDS
-from eomgen.documents.figures import LEAST as LEAST
-from eomgen.documents.figures import NOISE as NOISE
 
 # Settings of matplotlib with which every picture is drawn
 from eomgen.documents.figures import STYLE as STYLE

@@ -317,25 +317,25 @@ def _curves(panel: Any, t: np.ndarray, curves: Mapping[str, np.ndarray], unit: U
         panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
 
 
-NOISE = tolerances.RUN  # of the largest number: smaller changes are rounding and the errors of steps
 LEAST = 1e-3  # m, rad: noise is what is small beside so much, where a coordinate is smaller
 
 
-def range_without_noise(curves: Iterable[np.ndarray], size: float = LEAST) -> tuple[float, float] | None:
+def range_without_noise(curves: Iterable[np.ndarray], size: float | None = None) -> tuple[float, float] | None:
     """Range of an axis in which the noise of curves that stay constant is not seen; None: one of them changes.
 
     Args:
-        size: what is large beside them, in their unit.
+        size: what is large beside them, in their unit; None: a thousandth of it.
     """
     finite = [x[np.isfinite(x)] for x in curves]
     spans = [(float(x.min()), float(x.max())) for x in finite if len(x)]
+    size = LEAST if size is None else size
     size = max(size, *(abs(end) for span in spans for end in span)) if spans else size
-    if not spans or any(high - low > NOISE * size for low, high in spans):
+    if not spans or any(high - low > tolerances.RUN * size for low, high in spans):
         return None
     return min(low for low, _ in spans) - size / 2, max(high for _, high in spans) + size / 2
 
 
-def _without_noise(panel: Any, curves: Iterable[np.ndarray], size: float = LEAST) -> None:
+def _without_noise(panel: Any, curves: Iterable[np.ndarray], size: float | None = None) -> None:
     if (ends := range_without_noise(curves, size)) is not None:
         panel.set_ylim(*ends)
 
@@ -371,7 +371,7 @@ def reactions_by_unit(trajectory: Trajectory) -> dict[str, list[str]]:
     for name, column in trajectory.reactions.items():
         if not np.isnan(column).all():
             groups.setdefault(trajectory.units.get(name, ""), []).append(name)
-    seen = NOISE * largest_reaction(trajectory)
+    seen = tolerances.RUN * largest_reaction(trajectory)
     return {unit: names for unit, names in groups.items() if any(_size(trajectory, name) > seen for name in names)}
 
 

@@ -19,8 +19,6 @@ import numpy as np
 
 from eomgen.documents import (
     KINDS,
-    LEAST,
-    NOISE,
     Catalogue,
     Code,
     Picture,
@@ -44,6 +42,7 @@ from eomgen.page.markup import Html, curve_path, element, in_a_row, stepped
 from eomgen.results import missing_values
 from eomgen.simulation import Trajectory
 from eomgen.symbolic.expression import Graph, Node
+from eomgen.symbolic.numeric import tolerances
 from eomgen.symbolic.print import Notation
 
 OFTEN = 4  # times that a look is said before it has a name
@@ -140,7 +139,6 @@ class Pictures:
 
 WIDTH, HEIGHT = 720.0, 186.0
 LEFT, RIGHT, TOP, BOTTOM = 58.0, 8.0, 8.0, 28.0  # margins, in which the numbers stand
-ROUNDING = 1e-15  # of the energy: its error is shown where it is larger
 TICKS = 5  # about so many numbers on an axis
 PLAIN = 4  # digits before or behind the point, beyond which a power of ten is written
 COLORS = 8
@@ -231,7 +229,7 @@ def _energy(run: Trajectory) -> ReportFigure:
         return panel(run, [Line(energy, "curve c7", ())], "energy", "Energy T + V [J] over time [s]")
     within = " in each phase" if len(run.phases) > 1 else ""
     caption = f"Energy: T + V less its value at the start [J] over time [s]; relative drift {run.drift:.1e}{within}"
-    rounding = ROUNDING / NOISE * float(np.nanmax(np.abs(energy), initial=0.0))
+    rounding = tolerances.ROUNDING / tolerances.RUN * float(np.nanmax(np.abs(energy), initial=0.0))
     return panel(run, [Line(energy - energy[:1], "curve c7", ())], "energy", caption, rounding)
 
 
@@ -250,7 +248,7 @@ def _reactions(run: Trajectory, names: Sequence[str], unit: str, number: int) ->
     return panel(run, lines, f"reactions{number}", caption, largest_reaction(run))
 
 
-def panel(run: Trajectory, lines: Sequence[Line], key: str, caption: str, size: float = LEAST) -> ReportFigure:
+def panel(run: Trajectory, lines: Sequence[Line], key: str, caption: str, size: float | None = None) -> ReportFigure:
     """Curves of a run over time with their axes.
 
     Args:

@@ -131,7 +131,7 @@ class Subject:
     source: str
     sheet: Sheet = Sheet()
 
-    @cached_property
+    @property
     def language(self) -> Catalogue:
         """Words of the language that is requested, else of that of the model.
 

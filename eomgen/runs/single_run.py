@@ -177,7 +177,7 @@ def page_time(found: Trajectory) -> tuple[float, str]:
 
 
 def _by_its_motion(found: Trajectory) -> tuple[float, str]:
-    """As `page_time`, of a motion that lasted PAGE_TIME."""
+    """Time for which a motion is shown that lasted PAGE_TIME, and why it is another; ""."""
     t, rates = _rates(found)
     largest = np.max(np.abs(rates), axis=0, initial=0.0)
     moving = np.abs(rates) > STILL * largest

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Container, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from math import isfinite
 from random import Random
 from typing import Any
@@ -18,6 +19,7 @@ from eomgen.model import (
     MassProperties,
     Model,
     PlacedPiece,
+    Unit,
     in_order,
     no_orientation,
     spin_of_quaternion,
@@ -62,6 +64,18 @@ from eomgen.symbolic.print import length_of, text_size, to_text
 
 TRIES = 20  # of values at random of what has none
 LONGEST_LAW = 3  # marks of a constant rate or acceleration that is put in where it stands: 2 n
+
+
+_MASS, _FALL = re.compile(r"[mM](_.*|\d*)"), Unit.parse("m/s^2").dimension
+
+
+def _place(model: Model, name: str) -> int:
+    """Place of a parameter in a product: masses, then the acceleration of gravity, then the others as they are
+    declared: m*g*l."""
+    unit = model.parameters[name].unit
+    if unit is None:
+        return 0 if _MASS.fullmatch(name) else 1 if name == "g" else 2
+    return 0 if unit.dimension == Unit.parse("kg").dimension else 1 if unit.dimension == _FALL else 2
 
 
 @dataclass(frozen=True)
@@ -356,7 +370,8 @@ class Scope:
         zero = parameters_of_zero(model)
         graph = Graph()
         t = graph.symbol("t")
-        parameters = {name: graph.constant(name) for name in model.parameters}
+        made = {name: graph.constant(name) for name in sorted(model.parameters, key=partial(_place, model))}
+        parameters = {name: made[name] for name in model.parameters}
         q = tuple(graph.symbol(name) for name in model.coordinates)
         free = [name for name, c in model.coordinates.items() if not c.driven]
         u = tuple(graph.symbol(name + "'") for name in free)
