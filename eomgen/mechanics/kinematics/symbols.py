@@ -66,16 +66,19 @@ TRIES = 20  # of values at random of what has none
 LONGEST_LAW = 3  # marks of a constant rate or acceleration that is put in where it stands: 2 n
 
 
-_MASS, _FALL = re.compile(r"[mM](_.*|\d*)"), Unit.parse("m/s^2").dimension
+_BY_UNIT = {Unit.parse(unit).dimension: place for place, unit in enumerate(("1", "kg", "m/s^2"))}
+_LENGTH = Unit.parse("m").dimension
+_BY_NAME = (re.compile(r"mu(_.*|\d*)"), re.compile(r"[mM](_.*|\d*)"), re.compile("g"))
+OTHERS, LENGTHS = len(_BY_UNIT), len(_BY_UNIT) + 1
 
 
 def _place(model: Model, name: str) -> int:
-    """Place of a parameter in a product: masses, then the acceleration of gravity, then the others as they are
-    declared: m*g*l."""
+    """Place of a parameter in a product: coefficients, masses, the acceleration of gravity, others, lengths: mu*m*g,
+    k*l^2; by its unit, else by its name."""
     unit = model.parameters[name].unit
-    if unit is None:
-        return 0 if _MASS.fullmatch(name) else 1 if name == "g" else 2
-    return 0 if unit.dimension == Unit.parse("kg").dimension else 1 if unit.dimension == _FALL else 2
+    if unit is not None:
+        return LENGTHS if unit.dimension == _LENGTH else _BY_UNIT.get(unit.dimension, OTHERS)
+    return next((place for place, form in enumerate(_BY_NAME) if form.fullmatch(name)), OTHERS)
 
 
 @dataclass(frozen=True)
