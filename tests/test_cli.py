@@ -546,7 +546,7 @@ def test_solve_gives_every_output_in_the_fixed_shape():
     assert list(outputs) == ["kinetic_energy", "Q_theta", "theta_dd", "omega_disc", "N_A"]
     assert all(list(answer) == ["exact", "value", "unit", "method", "message"] for answer in outputs.values())
     assert outputs["Q_theta"]["exact"] == "6*M*g*R*sin(theta)"
-    assert others["K12"]["exact"] == "12*a^2*k"
+    assert others["K12"]["exact"] == "12*k*a^2"
     assert (others["omega3"]["exact"], others["omega3"]["value"]) == (None, None)
     assert others["omega3"]["message"].startswith("frequency(3): 2 small motions oscillate")
 
