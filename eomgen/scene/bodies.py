@@ -262,6 +262,12 @@ def inertia_mark(mass: MassProperties, frame: int, body: str) -> list[Mark]:
     return [Mark(EllipsoidForm(mass.com, Vector((size[0], size[1], size[2]))), frame, "inertia", body)]
 
 
+def _dot(mark: Mark) -> Mark:
+    """The place of a symbol alone."""
+    form: Any = mark.form
+    return replace(mark, form=PointForm(form.at))
+
+
 def is_a_rotor(mark: Mark) -> bool:
     """True of the symbol of a rotor."""
     return isinstance(mark.form, SymbolForm) and mark.form.symbol == "rotor" and mark.role == "body"
@@ -269,14 +275,14 @@ def is_a_rotor(mark: Mark) -> bool:
 
 def without_veils(marks: Sequence[Mark], *, alone: bool) -> list[Mark]:
     """An ellipsoid of inertia stands for a body that nothing else shows, or about the rods of the only body; the symbol
-    of a rotor for one whose rim no string or surface shows.
+    of a rotor for one whose rim no string or surface shows, else there is a dot.
 
     Moments that a model declares say little of its size: ellipsoids would hide how the bodies are connected.
     """
     rims = {
         mark.of for mark in marks if mark.role == "rim" or (mark.role == "body" and mark.form.kind in ("arc", "wheel"))
     }
-    marks = [mark for mark in marks if not (is_a_rotor(mark) and mark.of in rims)]
+    marks = [_dot(mark) if is_a_rotor(mark) and mark.of in rims else mark for mark in marks]
     shown = {mark.of for mark in marks if mark.role == "body" and not (alone and isinstance(mark.form, RodForm))}
     return [mark for mark in marks if mark.role != "inertia" or mark.of not in shown]
 
