@@ -1024,3 +1024,31 @@ def test_a_changed_model_without_an_answer_is_passed_over_and_a_mistake_of_ours_
     else:
         with pytest.raises((type(raised), RuntimeError)):  # a StopIteration inside a generator is a RuntimeError
             edits.explained(1)
+
+
+DEFINED = """
+eomgen = 1
+space = "plane"
+parameters = { m = 2, g = 9.81, F0 = 30 }
+coordinates = { s = 0 }
+bodies.load.shape = { kind = "particle", mass = "m" }
+bodies.load.joint = { kind = "prismatic", axis = [0, 1], displacement = "s" }
+forces.weight = { kind = "gravity", acceleration = [0, "-g"] }
+forces.pull = { kind = "generalized", coordinate = "s", value = "F0" }
+outputs.F = "m*(g + s'')"
+"""
+
+
+@each(
+    "equation, verdict, up_to",
+    [
+        ("F = m*(g + s'')", "right", "what F is"),
+        ("F - m*g = m*s''", "right", "what F is"),
+        ("F = m*(g - s'')", "wrong", ""),
+        ("F = F", "wrong", ""),  # it says nothing
+        ("F = F0", "right", None),
+    ],
+)
+def test_what_the_file_calls_an_output_is_right(equation, verdict, up_to):
+    found = eomgen.verify(eomgen.loads(DEFINED), equation)
+    assert found.verdict == verdict and (up_to is None or up_to in str(found.up_to)), found

@@ -410,8 +410,8 @@ class Judge:
         if not unknown:
             case.check(written)
         if says_nothing(case, written):
-            if written.name == "L":
-                return Verdict(written.given, kind, RIGHT, "what L is")
+            if letter := "L" if written.name == "L" else self._output_stated(written):
+                return Verdict(written.given, kind, RIGHT, f"what {letter} is")
             return self._not(written, kind, Decided(False, why=IDENTITY))
         if at is None and kind == "equilibrium" and not unknown:
             found = self._at_rest(written)
@@ -426,6 +426,15 @@ class Judge:
         if course is not None:
             return course
         return self._of_scalar(written, kind, case.value(written.difference))
+
+    def _output_stated(self, written: HandEquation) -> str:
+        """The letter of an output of which an equation says no more than the file does: F = m*(g + s''); "" of none."""
+        values = [output.value for output in self.case.model.outputs.values()]
+        with suppress(ExpressionError):
+            as_said = replace(written, left=parse(written.left.text), right=parse(written.right.text))
+            letters = [x for x in as_said.names if self.case.reading.letters.get(x) in values]
+            return letters[0] if letters and not says_nothing(self.case, as_said) else ""
+        return ""
 
     def _at_rest(self, written: HandEquation) -> Verdict | None:
         """Verdict on an equation in which nothing moves: on constraints or equilibrium; None: nothing rests."""

@@ -332,13 +332,12 @@ def by_balance(case: Case, kind: str, scalar: Scalar) -> Decided | None:
 
 
 def by_what_is_given(case: Case, written: HandEquation) -> Decided | None:
-    """Right where it follows from the constraints or given motions of coordinates, or says what an output is."""
+    """Right where it follows from the constraints, or from given motions, of coordinates that hang on others or on
+    time."""
     parts = {name.rstrip("'"): case.model.coordinates.get(name.rstrip("'")) for name in written.names}
     given = [f"the given motion of {name}" for name, part in parts.items() if part is not None and part.driven]
     constrained = ["the constraints"] if any(part is not None and part.dependent for part in parts.values()) else []
-    own = [f"what {name} is" for name in case.model.outputs if name in written.names]
-    why = [*constrained, *given] or own
-    return Decided(True, " and ".join(why)) if why else None
+    return Decided(True, " and ".join([*constrained, *given])) if constrained or given else None
 
 
 @dataclass(frozen=True)
