@@ -349,7 +349,7 @@ def curves_of(svg: Markup, box: str) -> ReadCurves:
     texts, lines = list(svg.all("text")), [x for x in svg.all("path") if x.given.get("class") == "axis"]
     for text, line in zip(texts, lines, strict=True):
         (x, y), _ = _path(line.given["d"])[0][:2]
-        value = float(text.text.replace("\N{MINUS SIGN}", "-"))
+        value = float(text.text.replace("\N{MINUS SIGN}", "-").replace(",", "."))  # a decimal comma
         ticks[text.given["text-anchor"]].append((x if text.given["text-anchor"] == "middle" else y, value))
     across, up = (_scale(ticks[name]) for name in ("middle", "end"))
     curves = []

@@ -133,7 +133,7 @@ PERIODS = 3  # of the slowest oscillation that are shown
 LONGEST = 60.0  # s, of a motion that is so slow
 STILL = 1e-3  # of the largest rate: slower, and it rests
 SWING = 0.05  # of the largest rate: smaller changes of sign are no oscillation
-ROUND = (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10)  # times, in powers of ten
+ROUND = (1, 1.2, 1.5, 2, 2.5, 3, 3.5, 4, 4.5, 5, 6, 7, 8, 10)  # times, in powers of ten
 ALIKE = (0.6, 1.3)  # of PAGE_TIME: it is taken in place of times between
 
 

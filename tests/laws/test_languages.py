@@ -88,9 +88,7 @@ def test_a_report_in_another_language_is_proven_and_its_formulas_are_the_same(la
         ]  # fmt: skip
         assert formulas[0] == formulas[1] and len(formulas[0]) > 4
     for ending in usual((".html", ".tex", ".md"), 3):
-        found = report(
-            MODELS / "cart_pole.toml", tmp_path / f"r{ending}", language=language, without=["motion", "plots"]
-        )
+        found = report(MODELS / "cart_pole.toml", tmp_path / f"r{ending}", language=language, without=["motion"])
         assert found.certificate is not None and found.certificate.ok, ending
 
 
