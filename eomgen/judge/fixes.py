@@ -374,15 +374,16 @@ def _needed(difference: Node, node: Node, values: Mapping[Node, np.ndarray]) -> 
     return None
 
 
-# -------- forces in space -------------------------------------------------------------------------------------
-# In the plane all balances are written and searched (`balances`); in space an equation between reactions is linear in
-# them: one of the author's is turned round, or another of the same kind is added with the factor of one that is there.
+# -------- forces of constraints -------------------------------------------------------------------------------
+# In the plane balances of what is cut free are written and searched (`balances`); in space, and in an equation of motion
+# with reactions, these are linear: one of the author's is turned round, or another of the same kind is added with the
+# factor of one that is there.
 
 
-def of_forces_in_space(case: Case, written: HandEquation) -> Cause | None:
+def of_forces(case: Case, written: HandEquation, kind: str) -> Cause | None:
     """The one reaction by which a wrong equation would be right; None: it is none of these."""
     calls = list(dict.fromkeys(call for call in written.calls if FUNCTION_KINDS.get(call.name) == "reaction"))
-    if case.model.space != "space" or not calls or case.unknown_names(written):
+    if (case.model.space != "space" and kind != "motion") or not calls or case.unknown_names(written):
         return None
     with suppress(EomgenError):
         return next(_forces(case, written, calls), None)

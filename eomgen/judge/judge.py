@@ -14,7 +14,7 @@ from eomgen.judge.answers import of_output, of_unknown, requested
 from eomgen.judge.case import Case
 from eomgen.judge.comparison import Comparison, excess, first_order_place, remainder
 from eomgen.judge.decision import is_zero_everywhere
-from eomgen.judge.fixes import Authored, Fixes, of_forces_in_space
+from eomgen.judge.fixes import Authored, Fixes, of_forces
 from eomgen.judge.implied import (
     Explainable,
     Instant,
@@ -334,7 +334,7 @@ class Judge:
     def _of_reading(self, written: HandEquation, kind: str, at: Any) -> Verdict:
         try:
             found = self._judged(written, kind, _instant(self.case, at))
-            if found.verdict == WRONG and at is None and (cause := of_forces_in_space(self.case, written)) is not None:
+            if found.verdict == WRONG and at is None and (cause := of_forces(self.case, written, kind)) is not None:
                 or_else = next((x.text for x in found.causes if x.kind != "other"), "")
                 found = replace(found, causes=(replace(cause, or_else=or_else),))
             return found.in_letters(self._letters_of(written))

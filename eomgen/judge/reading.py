@@ -20,7 +20,7 @@ from eomgen.judge.alphabet import Vocabulary, vocabulary
 from eomgen.judge.handwriting import RATE, Transcript, transcript
 from eomgen.judge.written_pages import WrittenNumber, in_one_formula, measured
 from eomgen.mechanics.dynamics import System
-from eomgen.model import FUNCTIONS
+from eomgen.model import FUNCTIONS, Members
 from eomgen.symbolic.expression import (
     SLOPE,
     Call,
@@ -305,8 +305,9 @@ class Reading:
     def _plain_letters(self) -> Iterator[tuple[str, Expression]]:
         """Letters that stand for what is alone of its kind.
 
-        B for the only force of the support B, A_H and A_V for those along x and y of A, J_S for the moment of inertia
-        of the only body with mass about its mass centre.
+        B for the only force of the support B, A_H and A_V for those along x and y of A, S_AC for the member of the
+        only truss, J_S for the moment of inertia of the only body with mass about its mass centre, M for the torque of
+        the only drive.
         """
         model = self.system.scope.model
         forces: dict[str, list[Call]] = {}
@@ -317,6 +318,15 @@ class Reading:
                 yield owner, _called(calls[0].name, *calls[0].args)
             for letter, axis in (("H", "x"), ("V", "y")) if model.space == "plane" else ():
                 yield f"{owner}_{letter}", _called(f"reaction_{axis}", Reference(owner))
+        trusses = {name: part.members for name, part in model.constraints.items() if isinstance(part, Members)}
+        for truss, members in trusses.items() if len(trusses) == 1 else ():
+            for member in members:
+                tension, (a, _, b) = parse(f"tension({truss}, {member})", references=True), member.partition("-")
+                yield from ((f"{x}_{ends}", tension) for x in "SFN" for ends in (f"{a}{b}", f"{b}{a}", f"{a}_{b}"))
+        driven = [name for name, q in model.coordinates.items() if q.driven]
+        turning = [body for body in model.bodies.values() if body.joint is not None and body.joint.kind == "revolute"]
+        if len(driven) == 1 and any(body.joint.angle.text == driven[0] for body in turning):
+            yield "M", _called("drive", Reference(driven[0]))
         heavy = [body for body in model.bodies if not is_zero(self.system.scope.mass_properties(body).m)]
         if len(heavy) == 1 and model.space == "plane":
             center = _called("inertia_point", Reference(f"{heavy[0]}.center"), Reference(heavy[0]))

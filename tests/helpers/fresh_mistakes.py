@@ -32,7 +32,7 @@ def lines(path: Path) -> Iterator[tuple[str, str, list[list[str]], dict[str, str
     for line in path.read_text().splitlines():
         kind, text, *rest = (x.strip() for x in line.split(" | "))
         words = rest.pop(0) if rest and (kind != "right" or rest[0] == "-") else ""
-        groups = [group.split(",") for group in words.split("+")] if words else []
+        groups = [[word.strip() for word in group.split(",")] for group in words.split("+")] if words else []
         yield kind, text, groups, dict(option.split(":", 1) for option in rest)
 
 
