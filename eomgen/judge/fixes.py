@@ -375,9 +375,8 @@ def _needed(difference: Node, node: Node, values: Mapping[Node, np.ndarray]) -> 
 
 
 # -------- forces of constraints -------------------------------------------------------------------------------
-# In the plane balances of what is cut free are written and searched (`balances`); in space, and in an equation of motion
-# with reactions, these are linear: one of the author's is turned round, or another of the same kind is added with the
-# factor of one that is there.
+# In the plane balances of what is cut free are searched (`balances`). In space, and in an equation of motion
+# with reactions, one of the author's is turned round, or another of its kind is added with the factor of one there.
 
 
 def of_forces(case: Case, written: HandEquation, kind: str) -> Cause | None:
@@ -398,7 +397,10 @@ def _forces(case: Case, written: HandEquation, calls: list[Call]) -> Iterator[Ca
         return symbols[call] if call in symbols else case.called(call)
 
     def holds(x: Scalar) -> bool:
-        return bool(is_zero_everywhere(case.system, *substituted((x,), values)).holds)
+        (there,) = substituted((x,), values)
+        if depends_on(there, case.forced):
+            return bool(case.follows(there).holds)
+        return bool(is_zero_everywhere(case.system, there).holds)
 
     left, right = (case.evaluated(side, case.names, opaque) for side in (written.left, written.right))
     values: dict[Node, Scalar] = {symbol: case.called(call) for call, symbol in symbols.items()}
