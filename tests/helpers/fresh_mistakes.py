@@ -9,6 +9,7 @@ looked at when the judge was fixed afterwards (2026-11-23), of those of even num
     python tests/helpers/fresh_mistakes.py all cut_mistakes         # 210 in balances of what is cut free, 2026-11-27
     python tests/helpers/fresh_mistakes.py odd unseen_mistakes      # 150 of a stranger, 2026-11-27; even: 150 more
     python tests/helpers/fresh_mistakes.py even blind_mistakes      # 125 of two more, first judged at the end of all
+    python tests/helpers/fresh_mistakes.py even sheet_mistakes    # 100 lines of new sheets, right and wrong, 2026-11-30
 """
 
 from __future__ import annotations
