@@ -20,7 +20,7 @@ from eomgen.judge.alphabet import Vocabulary, vocabulary
 from eomgen.judge.handwriting import RATE, Transcript, transcript
 from eomgen.judge.written_pages import WrittenNumber, in_one_formula, measured
 from eomgen.mechanics.dynamics import System
-from eomgen.model import FUNCTIONS, Members
+from eomgen.model import FUNCTIONS
 from eomgen.symbolic.expression import (
     SLOPE,
     Call,
@@ -318,7 +318,9 @@ class Reading:
                 yield owner, _called(calls[0].name, *calls[0].args)
             for letter, axis in (("H", "x"), ("V", "y")) if model.space == "plane" else ():
                 yield f"{owner}_{letter}", _called(f"reaction_{axis}", Reference(owner))
-        trusses = {name: part.members for name, part in model.constraints.items() if isinstance(part, Members)}
+        trusses: dict[str, tuple[str, ...]] = {
+            name: getattr(part, "members", ()) for name, part in model.constraints.items() if part.kind == "truss"
+        }
         for truss, members in trusses.items() if len(trusses) == 1 else ():
             for member in members:
                 tension, (a, _, b) = parse(f"tension({truss}, {member})", references=True), member.partition("-")

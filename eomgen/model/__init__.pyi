@@ -45,9 +45,6 @@ from eomgen.model.constraints.base import TouchingRound as TouchingRound
 # Equilibrium of a node without mass: nobody declares it, and its multiplier is 0
 from eomgen.model.constraints.equation import NodeBalance as NodeBalance
 
-# Massless bars between the nodes of one truss
-from eomgen.model.constraints.link import Members as Members
-
 # The two nodes of tension(T, n1-n2) or tension(T, n1, n2); None where it names no two
 from eomgen.model.constraints.link import ends_requested as ends_requested
 
