@@ -429,7 +429,7 @@ def test_a_verdict_that_is_turned_round_is_seen_by_numbers(text, equation):
 
 def test_a_judge_that_errs_fails_its_certificate(monkeypatch):
     """A decision that takes everything for right: exit code 3, and what differs is said."""
-    monkeypatch.setattr("eomgen.judge.judge.truth_of", lambda *_: Decided(True))
+    monkeypatch.setattr("eomgen.judge.judge.truth_of", lambda *_, **__: Decided(True))
     result = CliRunner().invoke(main, ["verify", "-", "l*theta'' = g*sin(theta)"], input=PENDULUM)
     assert result.exit_code == 3 and "it is judged right, and its sides differ" in result.output
 

@@ -326,8 +326,9 @@ class Reading:
                 tension, (a, _, b) = parse(f"tension({truss}, {member})", references=True), member.partition("-")
                 yield from ((f"{x}_{ends}", tension) for x in "SFN" for ends in (f"{a}{b}", f"{b}{a}", f"{a}_{b}"))
         driven = [name for name, q in model.coordinates.items() if q.driven]
-        turning = [body for body in model.bodies.values() if body.joint is not None and body.joint.kind == "revolute"]
-        if len(driven) == 1 and any(body.joint.angle.text == driven[0] for body in turning):
+        joints = (body.joint for body in model.bodies.values() if body.joint is not None)
+        turns = [str(getattr(joint, "angle", None)) for joint in joints if joint.kind == "revolute"]
+        if len(driven) == 1 and driven[0] in turns:
             yield "M", _called("drive", Reference(driven[0]))
         heavy = [body for body in model.bodies if not is_zero(self.system.scope.mass_properties(body).m)]
         if len(heavy) == 1 and model.space == "plane":
