@@ -130,7 +130,7 @@ def test_a_pendulum_rests_below_and_above():
     found = found_in(eomgen.load("models/simple_pendulum.toml"))
     assert found.complete
     assert [(exact(e)["theta"], e.stability.kind) for e in found.found] == [("0", "stable"), ("pi", "unstable")]
-    assert [to_text(e.stability.K[0][0]) for e in found.found] == ["m*l*g", "-m*l*g"]
+    assert [to_text(e.stability.K[0][0]) for e in found.found] == ["m*g*l", "-m*g*l"]
 
 
 @pytest.mark.parametrize("k", [0.4, 1.2, 3, 4.9, 5.1, 8])

@@ -73,9 +73,11 @@ OTHERS, LENGTHS = len(_BY_UNIT), len(_BY_UNIT) + 1
 
 
 def _place(model: Model, name: str) -> int:
-    """Place of a parameter in a product: coefficients, masses, the acceleration of gravity, others, lengths: mu*m*g,
-    k*l^2; by its unit, else by its name."""
+    """Place of a parameter in a product: coefficients, masses, the acceleration of gravity, others, lengths, angles:
+    mu*m*g, k*l^2; by its unit, else by its name."""
     unit = model.parameters[name].unit
+    if unit is not None and unit.angle and not unit.time:
+        return LENGTHS + 1
     if unit is not None:
         return LENGTHS if unit.dimension == _LENGTH else _BY_UNIT.get(unit.dimension, OTHERS)
     return next((place for place, form in enumerate(_BY_NAME) if form.fullmatch(name)), OTHERS)
