@@ -155,4 +155,4 @@ def test_a_centrode_is_drawn_where_the_centre_runs():
 def test_the_radius_of_a_centrode_is_a_short_formula():
     """Of a planet its centrodes are circles: their radii are lengths of vectors whose components are short."""
     text = " ".join(eomgen.kinematics(Path(__file__).parent.parent / "models" / "epicyclic_gear.toml").render().split())
-    assert "a circle about (0, 0), radius (a + b)*b*abs(w_arm/(a*w_arm - a*w_sun + b*w_arm))." in text
+    assert "a circle about (0, 0), radius (a + b)*b*abs(w_arm/(w_arm*a - w_sun*a + w_arm*b))." in text

@@ -40,7 +40,7 @@ def test_the_result_for_machines_has_every_part():
     found = json.loads(result.stdout)
     assert found["schema_version"] == 1 and found["second_order"] and found["exact"]
     assert found["mass"]["exact"] == [["M + m", "-1/2*m*l"], ["-1/2*m*l", "1/3*m*l^2"]]
-    assert found["stiffness"]["exact"] == [["0", "0"], ["0", "-1/2*m*l*g"]]
+    assert found["stiffness"]["exact"] == [["0", "0"], ["0", "-1/2*m*g*l"]]
     assert found["input"]["value"] == [[1.0], [0.0]]
     assert len(found["state_matrix"]) == 4 and len(found["input_matrix"]) == 4
     assert found["stability"] == "unstable" and "divergence" in found["why"]
@@ -115,7 +115,7 @@ def test_without_values_formulas_stand_and_numbers_are_missing():
     model = eomgen.loads(SWING.format("{}", "0"))
     found = eomgen.linearize(model)
     payload = found.as_dict()
-    assert payload["stiffness"]["exact"] == [["1/2*m*l*g"]] and payload["stiffness"]["value"] is None
+    assert payload["stiffness"]["exact"] == [["1/2*m*g*l"]] and payload["stiffness"]["value"] is None
     assert payload["state_matrix"] is None and payload["modes"] is None
     assert "omega_1 = sqrt(3*g/(2*l))" in found.render("text").replace("1/2*sqrt(6*g/l)", "sqrt(3*g/(2*l))")
 

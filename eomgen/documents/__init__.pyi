@@ -108,6 +108,7 @@ from eomgen.documents.json_form import equations_payload as equations_payload
 
 # Texts of the equations of motion in the payload, the reactions left out
 from eomgen.documents.json_form import payload_texts as payload_texts
+from eomgen.documents.languages import OURS as OURS
 from eomgen.documents.languages import Catalogue as Catalogue
 from eomgen.documents.latex import PREAMBLE as PREAMBLE
 

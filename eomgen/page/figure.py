@@ -19,6 +19,7 @@ import numpy as np
 
 from eomgen.documents import (
     KINDS,
+    OURS,
     Catalogue,
     Code,
     Picture,
@@ -61,7 +62,7 @@ _HALO = re.compile(
 """A letter with its white edge, and the same letter again."""
 
 
-def rest_figure(model: Model, language: Catalogue) -> ReportFigure:
+def rest_figure(model: Model, language: Catalogue = OURS) -> ReportFigure:
     """A model where it starts, with its coordinates and lengths.
 
     Args:

@@ -675,7 +675,7 @@ def test_all_places_of_a_bead_on_a_driven_hoop():
     """theta = 0, pi, and +-acos(g/(R omega^2)) beyond omega^2 = g/R, where the lowest place has become unstable"""
     found = eomgen.linearize(eomgen.load(MODELS / "bead_on_turning_hoop.toml"), "equilibrium").as_dict()["family"]
     places = {x["state"]["theta"]["exact"]: x["stability"] for x in found["motions"]}
-    aside = "acos(g/(R*omega^2))"
+    aside = "acos(g/(omega^2*R))"
     assert places == {"0": "unstable", aside: "stable", f"-{aside}": "stable", "pi": "unstable"} and found["complete"]
 
 
