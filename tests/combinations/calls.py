@@ -113,6 +113,7 @@ def commands(text: str, rng: Random, more: int = 3, *, every_format: bool = Fals
     side = Random(len(text))  # draws of its own: what is drawn above and below stays as it was
     language = side.choice(([], ["--language", side.choice(("de", "es", "fr"))]))
     sheet = side.choice(([], ["--for", side.choice(("problem", "worksheet", "solution"))], ["--with", "free_bodies"]))
+    letters = side.choice(([], ["--symbols"]))
     run = ["--time", "0.4", "--samples", "5", "--target", "numpy"]
     swept = rng.choice((["--over", f"{number}=1,1.2"], ["--random", f"{number}=uniform(1, 1.2)", "--runs", "2"]))
     found = [
@@ -129,11 +130,11 @@ def commands(text: str, rng: Random, more: int = 3, *, every_format: bool = Fals
         "codegen": ["codegen", "MODEL", "-o", "OUT/code", "--target", rng.choice(LANGUAGES)],
         "report": ["report", "MODEL", "-o", "OUT/" + rng.choice(PAGES), "--time", "0.3", *language, *sheet],
         "animate": ["animate", "MODEL", "-o", "OUT/a.html", "--time", "0.2", "--forces"],
-        "play": ["play", "MODEL", "-o", "OUT/p.html", "--time", "0.3"],
+        "play": ["play", "MODEL", "-o", "OUT/p.html", "--time", "0.3", *language],
         "sweep": ["sweep", "MODEL", "-o", "OUT/sweep", *swept, "--ask", f"last({q})", "--time", "0.2"],
         "export": ["export", "MODEL", "-o", "OUT/robot.urdf"],
         "identify": ["identify", "MODEL", *form()],
-        "simulate": ["simulate", "MODEL", *run, "-o", "OUT/run.csv", "--units"],
+        "simulate": ["simulate", "MODEL", *run, "-o", "OUT/run.csv", "--units", *letters],
     }
     drawn = sorted(rest, key=lambda verb: rng.random() ** (1 / WEIGHTS[verb]), reverse=True)
     requested = found + [rest[verb] for verb in drawn[:more]]
