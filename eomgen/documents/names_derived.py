@@ -128,7 +128,8 @@ def _of_bodies(system: System) -> Iterator[tuple[Side, str, Value | None]]:
             yield Name("omega", body), f"omega({body})", None
         for k in () if plane else range(3):
             yield Name(f"omega_{k + 1}", body), "", partial(_spin, body, k)
-        yield Name("T", body), f"kinetic_energy({body})", None
+        rotor = not is_zero(SystemInertia(motion).rotor_energy(link))  # which has a line of its own
+        yield Name("T", body), *(("", partial(_own_energy, body)) if rotor else (f"kinetic_energy({body})", None))
         yield Name("T", f"{body}, rotor"), "", partial(_rotor_energy, body)
     yield Name("T", "given"), "", lambda study, whole: SystemInertia(whole.motion).given_energy
 
@@ -136,6 +137,11 @@ def _of_bodies(system: System) -> Iterator[tuple[Side, str, Value | None]]:
 def _spin(body: str, k: int, study: Study, whole: System) -> Scalar:
     found: Scalar = whole.motion.spin(whole.motion.link(body))[k]
     return found
+
+
+def _own_energy(body: str, study: Study, whole: System) -> Scalar:
+    found = next(energy for energy in SystemInertia(whole.motion).bodies if energy.body == body)
+    return found.translation + found.rotation
 
 
 def _rotor_energy(body: str, study: Study, whole: System) -> Scalar:

@@ -39,7 +39,7 @@ CASE = re.compile(r"\s(?:else )?where .+(?:<=|>=|<|>).+$|\sotherwise$")
 INSIDE = re.compile(r"\([^()]*\)")
 WORDS = re.compile(r"(?<![\w.'\\])[^\W\d_]{2,}[.,;]?\s+[^\W\d_]{2,}(?![\w'(])")
 BLANK = r"(?:\s|\\q?quad\b|\\[,;:!]|~)"
-CONTINUED = re.compile(rf"{BLANK}*(?:[-+=]|\\(?:cdot|times|pm)\b)")
+CONTINUED = re.compile(rf"{BLANK}*(?:[-+=]|\\(?:cdot|times|pm)\b)|{BLANK}*\\q?quad\b")
 SPACE = re.compile(rf"^{BLANK}+")
 RULE = re.compile(r"[-=~^#*\s]*$")
 OMITTED = re.compile(r"\(\d+ operations, not printed\)")
