@@ -278,7 +278,10 @@ def _written(modes: Modes, polynomial: Polynomial) -> Scalar:
     """The highest power first."""
     assert modes.small.exact is not None
     s, coefficients = modes.small.exact.laplace_variable, [modes.written(c) for c in polynomial.coefficients]
-    total: Scalar = 0
+    total: Scalar = sum((c * s**n for n, c in reversed(list(enumerate(coefficients)))), start=0)
+    if isinstance(total, Node) and total.op == "neg":
+        return total
+    total = 0
     for n, c in reversed(list(enumerate(coefficients))):
         power = c * s**n
         if isinstance(total, Node) and isinstance(power, Node):  # a sum that was written before keeps its own order
