@@ -271,9 +271,9 @@ def _dimension(form: forms.DimensionForm, mark: Mark, numbers: SceneNumbers, siz
     if not sizes.dimensions:
         return [], []
     a, b = numbers.spot(form.a, mark), numbers.spot(form.b, mark)
-    if np.nanmax(np.linalg.norm(b - a, axis=1), initial=0.0) > LONGEST * sizes.extent:
-        return [], []  # of what the picture does not show as a whole
-    a = a + np.where(np.linalg.norm(b - a, axis=1, keepdims=True) > NARROW * sizes.unit, 0.0, np.nan)
+    length = np.linalg.norm(b - a, axis=1, keepdims=True)
+    whole = np.nanmax(length, initial=0.0) <= LONGEST * sizes.extent  # else the picture shows a part of it
+    a = a + np.where((length > NARROW * sizes.unit) & whole, 0.0, np.nan)
     x = _unit(b - a)
     side = np.column_stack([x[:, 1], -x[:, 0]])
     middle = 0.5 * (sizes.low + sizes.high)
