@@ -317,6 +317,8 @@ def test_no_formula_and_no_row_of_it_is_lost(name):
         (r"x_{\mathrm{stick\_x},1}", r'x _(upright("stick_x") \, 1)'),
         (r"\operatorname{atan2}\left(y, x\right)", r'op("atan2") lr(\( y \, x \))'),
         (r"\sqrt{\lvert x \rvert}", r"sqrt(\| x \|)"),
+        (r"9{,}81\ \text{m/s$^2$}", r'"9,81" thick "m/s" ^(2)'),
+        (r"2\ \text{N$\cdot$m}", r'2 thick "N" ⋅ "m"'),
         (r"\begin{cases} a & x < 0 \\ b & \text{otherwise} \end{cases}", 'cases(a & x < 0, b & "otherwise")'),
         (r"\begin{pmatrix} a & b \\ c & d \end{pmatrix}", 'mat(delim: "(", a , b; c , d)'),
     ],

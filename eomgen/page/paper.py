@@ -225,7 +225,7 @@ def _certificate(certificate: Certificate, say: Callable[[str], str]) -> str:
 # Our LaTeX -> the mathematics of Typst, which sets papers without TeX: the same commands, one after the other.
 
 
-TOKEN = re.compile(r"\\[a-zA-Z]+\*?|\\.|\d+(?:\.\d+)?|[^\s]", re.DOTALL)
+TOKEN = re.compile(r"\\[a-zA-Z]+\*?|\\.|\d+(?:\.\d+|\{,\}\d+)?|[^\s]", re.DOTALL)
 SMALL = (
     "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau upsilon phi chi psi"
     " omega varphi vartheta varepsilon varrho varpi varsigma varkappa"
@@ -297,9 +297,8 @@ class _Reader:
     def _one(self, token: str) -> str:
         if token in "_^" and len(token) == 1:
             return f"{token}({self._argument()})"
-        if self._tex.startswith("{,}", self._place - 1) and token == "{":
-            self._place += 2
-            return '","'  # a decimal comma
+        if "{,}" in token:
+            return string(token.replace("{,}", ","))  # a number with a decimal comma
         if token == "{":
             return self.until("}")
         if token == "&":
@@ -316,13 +315,23 @@ class _Reader:
 
     def _words(self) -> str:
         """Content of the next braces, as words."""
+        return _plain(self._braces())
+
+    def _set_words(self) -> str:
+        """Words of the next braces, and what stands between dollars in them set: m/s$^2$."""
+        parts = self._braces().split("$")
+        set_parts = (typst_math(part) if k % 2 else string(_plain(part)) for k, part in enumerate(parts) if part)
+        return " ".join(set_parts) or string("")
+
+    def _braces(self) -> str:
+        """Content of the next braces."""
         start = self._tex.index("{", self._place) + 1
         depth, place = 1, start
         while depth:
             place += 2 if self._tex[place] == "\\" else 1
             depth += {"{": 1, "}": -1}.get(self._tex[place - 1], 0) if self._tex[place - 2] != "\\" else 0
         self._place = place
-        return _plain(self._tex[start : place - 1])
+        return self._tex[start : place - 1]
 
     def _command(self, name: str) -> str:
         if name in GREEK or name in TYPST_SIGNS:
@@ -336,7 +345,7 @@ class _Reader:
         if name in ("mathrm", "mathsf") and SCRIPTED.match(self._tex, self._place):
             return f"{UPRIGHT[name]}({self._argument()})"
         if name in UPRIGHT:
-            return f"{UPRIGHT[name]}({string(self._words())})" if UPRIGHT[name] else string(self._words())
+            return f"{UPRIGHT[name]}({string(self._words())})" if UPRIGHT[name] else self._set_words()
         if name in STRUCTURES:
             return STRUCTURES[name](self)
         if len(name) == 1 and not name.isalnum():  # \_ \{ \%

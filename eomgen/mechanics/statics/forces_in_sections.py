@@ -161,22 +161,26 @@ class SectionForces:
             DerivationError: something acts off its axis, or at no place; its mass is no rod's; a reaction is
                 indeterminate.
         """
-        system = reactions.balance.system
-        motion = system.motion
-        if motion.scope.model.space != "plane":
+        if reactions.balance.system.motion.scope.model.space != "plane":
             raise DerivationError(
                 "section forces are found in the plane", f"bodies.{body}", fix="fix the beam in a model of the plane"
             )
-        sizes = sizes_of(motion, {**reactions.at, **reactions.unknowns})
-        loads = MemberLoads(reactions, body, sizes)
-        actions, spreads = loads.actions, loads.spreads
-        axis = axis_of(motion, body, [place for place, _, _ in actions] + [p for s in spreads for p in s[:2]], sizes)
-        placed = [Action(on_axis(axis, place), force, couple) for place, force, couple in actions]
-        spread = [part for line in spreads for part in spread_along(axis, line)]
+        axis, placed, spread = _acting_along(reactions, body)
         return SectionForces(axis, tuple(_pieces(axis, placed, spread)))
 
 
 # -- along the axis ----------------------------------------------------------------------------------
+
+
+def _acting_along(reactions: Reactions, body: str) -> tuple[MemberAxis, list[Action], list[Spread]]:
+    """(the axis of a body, what acts at places of it, what is spread over it)."""
+    motion = reactions.balance.system.motion
+    sizes = sizes_of(motion, {**reactions.at, **reactions.unknowns})
+    loads = MemberLoads(reactions, body, sizes)
+    actions, spreads = loads.actions, loads.spreads
+    axis = axis_of(motion, body, [place for place, _, _ in actions] + [p for s in spreads for p in s[:2]], sizes)
+    placed = [Action(on_axis(axis, place), force, couple) for place, force, couple in actions]
+    return axis, placed, [part for line in spreads for part in spread_along(axis, line)]
 
 
 def on_axis(axis: MemberAxis, place: Vector) -> Scalar:
@@ -484,13 +488,7 @@ class SectionsInSpace:
         Raises:
             DerivationError: as of `SectionForces.of`.
         """
-        motion = reactions.balance.system.motion
-        sizes = sizes_of(motion, {**reactions.at, **reactions.unknowns})
-        loads = MemberLoads(reactions, body, sizes)
-        actions, spreads = loads.actions, loads.spreads
-        axis = axis_of(motion, body, [place for place, _, _ in actions] + [p for s in spreads for p in s[:2]], sizes)
-        placed = [Action(on_axis(axis, place), force, couple) for place, force, couple in actions]
-        spread = [part for line in spreads for part in spread_along(axis, line)]
+        axis, placed, spread = _acting_along(reactions, body)
         return SectionsInSpace(axis, tuple(_pieces_in_space(axis, placed, spread)))
 
 
