@@ -9,7 +9,6 @@ import io
 import math
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -58,10 +57,6 @@ class Picture:
     fill: Callable[[Any], None]
     title: str = ""
     language: Catalogue = OURS
-
-    def said_in(self, language: Catalogue) -> Picture:
-        """The picture with its words and the numbers of its axes in another language."""
-        return replace(self, language=language)
 
     def save(self, path: str | Path) -> None:
         """Draw it into a PNG, SVG or PDF file; the ending says which.

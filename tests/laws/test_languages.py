@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from importlib import resources
 from pathlib import Path
 
@@ -159,7 +160,7 @@ def test_the_page_of_a_motion_speaks_the_language():
 
 def test_pictures_speak_the_language():
     """Words that matplotlib draws, and the numbers of its axes."""
-    picture = eomgen.statics(MODELS / "fink_truss.toml").picture.said_in(catalogue("de"))
+    picture = replace(eomgen.statics(MODELS / "fink_truss.toml").picture, language=catalogue("de"))
     texts: list[str] = []
     picture._drawn(lambda figure: texts.extend(text.get_text() for text in figure.findobj(Text)))
     assert any("Zug blau" in text for text in texts) and not any(re.search(r"\d\.\d", text) for text in texts)
