@@ -11,6 +11,7 @@ from typing import Any
 from eomgen.errors import DerivationError, EomgenError, ExpressionError, MissingValues, RunFailed, UsageError
 from eomgen.frozen import dataclass
 from eomgen.judge.answers import of_output, of_unknown, requested
+from eomgen.judge.balances import requests_reactions
 from eomgen.judge.case import Case
 from eomgen.judge.comparison import Comparison, excess, first_order_place, remainder
 from eomgen.judge.decision import is_zero_everywhere
@@ -34,6 +35,7 @@ from eomgen.judge.renaming import (
     is_of_kinetic_energy,
     renamings,
     with_constant_forces,
+    with_reactions_of_zero,
     without_damping,
 )
 from eomgen.judge.truth import (
@@ -475,10 +477,9 @@ class Judge:
         """The verdict on an equation whose names are all known."""
         case = self.case
         found = truth_of(case, scalar, kind, to_a_constant=not is_of_kinetic_energy(written))
-        if found.why == IDENTITY and any(FUNCTION_KINDS.get(call.name) == "reaction" for call in written.calls):
-            found = Decided(True, "the balance of forces")
-        elif found.why == IDENTITY:
-            found = by_what_is_given(case, written) or found
+        if found.why == IDENTITY:
+            by_forces = Decided(True, "the balance of forces") if requests_reactions(written) else None
+            found = by_forces or by_what_is_given(case, written) or found
         if not found.holds and not found.why:
             found = (
                 by_balance(case, kind, scalar)
@@ -497,7 +498,7 @@ class Judge:
                     reported = BEGUN[0] if case.model.on_paths else BEGUN[1]
                     found = Decided(True, f"{reported} and {so.up_to}" if so.up_to else reported)
         if found.holds:
-            return Verdict(written.given, kind, RIGHT, found.up_to)
+            return Verdict(written.given, kind, RIGHT, with_reactions_of_zero(case, written, kind, found.up_to))
         if found.holds is None:
             return Verdict(written.given, kind, UNDECIDED, reason=found.up_to or "no state of the model decides it")
         solved: dict[str, Scalar] = {}

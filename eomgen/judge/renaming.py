@@ -16,7 +16,8 @@ from eomgen.frozen import dataclass
 from eomgen.judge.case import Case
 from eomgen.judge.reading import HandEquation
 from eomgen.judge.terms import ANGLES
-from eomgen.judge.truth import Decided, on_one_side, truth_of
+from eomgen.judge.truth import IDENTITY, Decided, on_one_side, truth_of
+from eomgen.judge.verdict import FUNCTION_KINDS
 from eomgen.symbolic.expression import Call, Expression, Node, Scalar, is_zero, order, over, parse
 from eomgen.symbolic.print import to_text
 
@@ -174,6 +175,17 @@ def with_constant_forces(case: Case, written: HandEquation, kind: str) -> Decide
     if not found.holds:
         found = on_one_side(case, written, kind, scalar) or found
     return Decided(True, " and ".join(filter(None, (WORK, found.up_to)))) if found.holds else None
+
+
+def with_reactions_of_zero(case: Case, written: HandEquation, kind: str, up_to: str) -> str:
+    """What an equation is right up to; of one of motion the reactions in it that are 0 in every motion, too."""
+    calls = written.calls if kind == "motion" else ()
+    asked = [call for call in calls if FUNCTION_KINDS.get(call.name) == "reaction"]
+    found = {call: truth_of(case, case.called(call), "motion") for call in asked}
+    idle = [call for call, x in found.items() if x.holds or x.why == IDENTITY]
+    letters = ", ".join(written.letters.get(str(call), str(call)) for call in idle)
+    reported = f"{letters}, which {'is' if len(idle) == 1 else 'are'} 0 in every motion" if idle else ""
+    return " and ".join(filter(None, (up_to, reported)))
 
 
 def without_damping(case: Case, written: HandEquation) -> HandEquation | None:
