@@ -177,6 +177,49 @@ def test_a_mistake_has_its_name(model, equation, cause, word):
     assert (found.verdict, kinds(found)) == ("wrong", [cause]) and word in found.causes[0].text
 
 
+PROPPED = """
+eomgen = 1
+name = "Beam between two pins"
+space = "plane"
+parameters = { l = { value = 2, unit = "m" }, F = { value = 3, unit = "kN" } }
+bodies.beam.points = { A = [0, 0], B = ["l", 0], C = ["l/2", 0] }
+constraints.A = { kind = "pin", points = ["beam.A"] }
+constraints.B = { kind = "pin", points = ["beam.B"] }
+forces.load = { kind = "force", point = "beam.C", force = [0, "-F"] }
+"""
+
+
+@each(
+    "equation, expected",
+    [
+        (r"\Delta_{A_x} = -k1", "right"),
+        ("Delta B_x = k1", "right"),
+        ("Delta(A_x) = k1", "undecided"),  # right with another k1: beside Delta(B_x) = k1 it is not
+        ("Delta(A_x) = 0", "wrong"),
+        ("Delta(A_y) = k1", "wrong"),
+        ("Delta(A_y) = 0", "right"),
+    ],
+)
+def test_shares_of_a_self_stress(equation, expected):
+    """Two pins on one line press against each other by any force: A_x and B_x take opposite shares of it."""
+    assert eomgen.verify(eomgen.loads(PROPPED), equation).verdict == expected
+
+
+@each(
+    "model, equation, expected",
+    [
+        ("three_hinged_arch", "M_extreme = 4*w*a^2", ("right", "")),  # a bar of 4 sqrt(2) a under w: q l^2/8
+        ("three_hinged_arch", "M_extreme = 5*w*a^2", ("wrong", "4*w*a^2")),
+        ("three_hinged_arch", r"M_{\max} = 5/2*q*a^2", ("right", "")),
+        ("beam_with_overhang", "M_max = 2*F*c", ("right", "")),  # with the file's numbers over the support
+        ("beam_with_overhang", "M_max = F*c", ("wrong", "-2*F*c")),
+    ],
+)
+def test_the_greatest_moment_of_a_beam(model, equation, expected):
+    found = verdict(model, equation)
+    assert found.verdict == expected[0] and expected[1] in "".join(cause.text for cause in found.causes)
+
+
 def test_a_reaction_that_is_0_is_said():
     """The massless guide holds its bob by no force across: N changes nothing, and the verdict says it."""
     found = verdict("elastic_pendulum", "m*r'' - m*r*theta'^2 = m*g*cos(theta) - k*(r - l0) + N")

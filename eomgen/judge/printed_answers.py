@@ -20,7 +20,7 @@ from eomgen.judge.case import Case
 from eomgen.judge.comparison import excess
 from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.reading import HandEquation
-from eomgen.judge.verdict import RIGHT, WRONG, Cause, Verdict
+from eomgen.judge.verdict import RIGHT, UNDECIDED, WRONG, Cause, Verdict
 from eomgen.mechanics.linearization import LinearEquations, Modes, StateMatrices
 from eomgen.mechanics.statics import SectionForces
 from eomgen.results import linearize
@@ -269,10 +269,16 @@ FUNCTIONS = {"N": "axial_force", "V": "shear_force", "Q": "shear_force", "M": "b
 AT = re.compile(
     r"\s*(?P<letter>[NVQM])(?:_\{?b\}?)?\s*(?:\\left)?\((?P<place>[^()=]+?)(?:\\right)?\)\s*=(?P<right>.*)", re.S
 )
+_EXTREME = r"(?:\\mathrm\{extreme\}|extreme)"
+_GREATEST = r"\\?(?:max|mathrm\{max\}|text\{max\})"
 EXTREME = re.compile(
-    r"\s*(?:M\(extreme\)|M_\{?(?:\\mathrm\{extreme\}|extreme)\}?|(?P<place>[a-z_]+))\s*=(?P<right>.*)", re.S
+    rf"\s*(?:M\(extreme\)|M_\{{?{_EXTREME}\}}?|(?P<greatest>M_\{{?{_GREATEST}\}}?|max\(\|?M\|?\))"
+    r"|(?P<place>[a-z_]+))\s*=(?P<right>.*)",
+    re.S,
 )
-DELTA = re.compile(r"\s*(?:\\?Delta)(?:_\{(?P<index>.+)\}|\((?P<letter>.+)\))\s*=(?P<right>.*)", re.S)
+DELTA = re.compile(
+    r"\s*(?:\\?Delta|Δ)(?:_\{(?P<index>.+)\}|\((?P<letter>.+)\)|\s*(?P<plain>[A-Z]\w*))\s*=(?P<right>.*)", re.S
+)
 PLACE = "the place of an extreme of M"
 
 
@@ -341,31 +347,65 @@ def _in_a_part(case: Case, given: str, true: list[Scalar], author: Scalar, parts
 
 
 def _of_extreme(case: Case, given: str, found: re.Match[str]) -> Verdict | None:
-    """An extreme of M, or its place x; None where it is none of these: x may be something else."""
-    if found["place"] and (found["place"] in case.system.scope.names or found["place"] in case.reading.letters):
+    """An extreme of M, its greatest size, or the place of an extreme; None where it is none of these."""
+    letter = given.partition("=")[0].strip()
+    if letter in case.system.scope.names or letter in case.reading.letters:
         return None
     author = case.value(case.reading.read(f"{found['right']} = 0").left)
-    for _, forces in _beams(case):
-        for extreme in forces.extremes:
-            true = case.own(extreme.x if found["place"] else extreme.M)
-            if is_zero_everywhere(case.system, true - author).holds:
-                return Verdict(given, "statics", RIGHT, PLACE if found["place"] else "")
-    return None
+    beams = [forces for _, forces in _beams(case)]
+    if found["place"]:
+        places = [case.own(extreme.x) for forces in beams for extreme in forces.extremes]
+        right = any(is_zero_everywhere(case.system, true - author).holds for true in places)
+        return Verdict(given, "statics", RIGHT, PLACE) if right else None  # x may be something else
+    values = [x for forces in beams for x in (_greatest(forces) if found["greatest"] else _of_extremes(forces))]
+    if not values:
+        return None
+    true = list(dict.fromkeys(case.own(x) for x in values))
+    if found["greatest"] and any(is_zero_everywhere(case.system, x + author).holds for x in true):
+        return Verdict(given, "statics", RIGHT, "the sign of M")
+    return _in_a_part(case, given, true, author, [""] * len(true), letter)
+
+
+def _of_extremes(forces: SectionForces) -> list[Scalar]:
+    return [extreme.M for extreme in forces.extremes]
+
+
+def _greatest(forces: SectionForces) -> list[Scalar]:
+    """The moments of the greatest size along a beam; of those whose order nobody knows all."""
+    sizes, found = forces.sizes, _of_extremes(forces)
+    for piece in forces.pieces:
+        found += [piece.value("bending_moment", x) for x in (piece.start, piece.end)]
+    kept: list[Scalar] = []
+    for x in map(sizes.shortest, found):
+        larger, smaller = False, []
+        for other in kept:
+            with suppress(DerivationError):
+                more = sizes.sign(x * x - other * other)
+                larger, smaller = larger or more <= 0, [*smaller, *([other] if more > 0 else [])]
+        kept = [each for each in kept if each not in smaller] + ([] if larger else [x])
+    return kept
 
 
 def _of_share(case: Case, given: str, found: re.Match[str]) -> Verdict | None:
     """The share of a reaction in a self-stress of any size k."""
     reactions = case.quantities.reactions
     with suppress(ExpressionError):
-        call = case.reading.read(f"{found['letter'] or found['index']} = 0").left.calls[0]
+        letter = found["letter"] or found["index"] or found["plain"]
+        calls = case.reading.read(f"{letter} = 0").left.calls
         right = case.reading.read(f"{found['right']} = 0").left
         unknown = sorted(right.names - case.system.scope.names.keys() - {"pi"})
-        if len(unknown) != 1:
+        if len(unknown) > 1 or len(calls) != 1 or not reactions.null_space:
             return None
-        k = case.system.scope.graph.symbol(unknown[0])
-        author = case.value(right, {unknown[0]: k})
-        for space in reactions.null_space:
-            share = next((x for name, x in space.items() if name == str(call)), None)
-            if share is not None and is_zero_everywhere(case.system, author - case.own(share) * k).holds:
-                return Verdict(given, "statics", RIGHT, f"the self-stress {unknown[0]}, of any size")
+        name = unknown[0] if unknown else "k1"
+        k = case.system.scope.graph.symbol(name)
+        author = case.value(right, {name: k})
+        shares = [case.own(x) * k for space in reactions.null_space for y, x in space.items() if y == str(calls[0])]
+        if any(is_zero_everywhere(case.system, author - share).holds for share in shares or [0]):
+            return Verdict(given, "statics", RIGHT, f"the self-stress {name}, of any size" if shares else "")
+        true = " or ".join(f"Delta({letter}) = {readable_text(share)}" for share in shares)
+        if shares and not is_zero(author):
+            text = f"the size of a self-stress is free: with the {name} that eomgen prints it is {true}"
+            return Verdict(given, "statics", UNDECIDED, reason=text)
+        text = f"it is {true}" if shares else f"the balance determines {letter}: no self-stress changes it"
+        return Verdict(given, "statics", WRONG, causes=(Cause("other", text, quantity=f"Delta({letter})"),))
     return None
