@@ -178,7 +178,7 @@ def with_constant_forces(case: Case, written: HandEquation, kind: str) -> Decide
 
 
 def with_reactions_of_zero(case: Case, written: HandEquation, kind: str, up_to: str) -> str:
-    """What an equation is right up to; of one of motion the reactions in it that are 0 in every motion, too."""
+    """Words for what an equation is right up to; of one of motion also its reactions that are 0 in every motion."""
     calls = written.calls if kind == "motion" else ()
     asked = [call for call in calls if FUNCTION_KINDS.get(call.name) == "reaction"]
     found = {call: truth_of(case, case.called(call), "motion") for call in asked}
