@@ -7,6 +7,7 @@ import re
 import tempfile
 from collections.abc import Callable, Container, Mapping
 from dataclasses import replace
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -98,7 +99,8 @@ class ReportFigure:
         size: width and height of its box.
         marks: its content, SVG; its look is given by classes, so that a page can be dark.
         legend: its curves.
-        save: draws it into a file of its own, whose ending says how; None where that is not possible.
+        save: draws it into a file of its own, whose ending says how, where it is not fixed in a `language`; None where
+            that is not possible.
         fixed: its colours are its own, for light paper.
     """
 
@@ -107,7 +109,7 @@ class ReportFigure:
     size: tuple[float, float]
     marks: Html
     legend: tuple[LegendEntry, ...] = ()
-    save: Callable[[Path], object] | None = None
+    save: Callable[..., object] | None = None
     fixed: bool = False
 
     def drawn(self, ending: str) -> bytes:
@@ -180,6 +182,7 @@ class ReportSection:
                 caption=language.say(each.caption),
                 marks=each.marks if each.fixed else Html(_TICK.sub(lambda x: language.number(x[0]), each.marks)),
                 legend=tuple(replace(curve, name=language.prose(curve.name)) for curve in each.legend),
+                save=each.save if each.fixed or each.save is None else partial(each.save, language=language),
             )
             for each in self.drawings
         )

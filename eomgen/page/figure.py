@@ -282,7 +282,7 @@ def panel(run: Trajectory, lines: Sequence[Line], key: str, caption: str, size: 
     )
 
 
-def _save(t: np.ndarray, lines: Sequence[Line], notation: Notation, path: Path) -> None:
+def _save(t: np.ndarray, lines: Sequence[Line], notation: Notation, path: Path, language: Catalogue = OURS) -> None:
     """The same by matplotlib, for formats that carry pictures as files."""
 
     def fill(figure: Any) -> None:
@@ -300,7 +300,7 @@ def _save(t: np.ndarray, lines: Sequence[Line], notation: Notation, path: Path) 
         if any(line.name for line in lines):
             panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8)
 
-    Picture((8, 2.4), fill).save(path)
+    Picture((8, 2.4), fill, language=language).save(path)
 
 
 def _tick(x: float | None, y: float | None, text: str) -> Html:

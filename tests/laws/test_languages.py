@@ -164,3 +164,12 @@ def test_pictures_speak_the_language():
     texts: list[str] = []
     picture._drawn(lambda figure: texts.extend(text.get_text() for text in figure.findobj(Text)))
     assert any("Zug blau" in text for text in texts) and not any(re.search(r"\d\.\d", text) for text in texts)
+
+
+def test_plots_beside_a_page_have_the_decimal_sign_of_the_language(tmp_path):
+    """SVG files next to Markdown: matplotlib writes each text of an axis into a remark, too."""
+    path, options = tmp_path / "page.md", ["--language", "de", "--time", "1", "--with", "plots"]
+    found = CliRunner().invoke(main, ["report", str(MODELS / "simple_pendulum.toml"), "-o", str(path), *options])
+    assert found.exit_code == 0, found.output
+    numbers = re.findall(r"<!-- (\S*\d\S*) -->", (tmp_path / "page-motion1.svg").read_text("utf-8"))
+    assert any("," in number for number in numbers) and not any("." in number for number in numbers)
