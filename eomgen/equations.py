@@ -107,6 +107,11 @@ class Equations(Result):
         return tuple(u.name for u in self.graph.symbols.u)
 
     @property
+    def states(self) -> tuple[str, ...]:
+        """The states of first order, the last part of x = (q, u, z)."""
+        return tuple(z.name for z in self.graph.symbols.z)
+
+    @property
     def parameters(self) -> tuple[str, ...]:
         return tuple(self.graph.symbols.parameters)
 
@@ -123,7 +128,7 @@ class Equations(Result):
         from eomgen.symbolic.print import symbol
 
         own = self.graph.symbols
-        named = (own.t, *own.parameters.values(), *own.inputs.values(), *own.q, *own.u, *own.a, *own.lam)
+        named = (own.t, *own.parameters.values(), *own.inputs.values(), *own.q, *own.u, *own.a, *own.z, *own.lam)
         return {node.name: symbol(node.name) for node in named}
 
     N = cached_property(lambda self: _matrix(self.graph.N, len(self.speeds)))
@@ -182,7 +187,7 @@ class Equations(Result):
 
         s = self.graph.symbols
         values = (t, *(parameter_vector(self.model) if p is None else p), *(self.start() if x is None else x))
-        nodes = (s.t, *s.parameters.values(), *s.q, *s.u)
+        nodes = (s.t, *s.parameters.values(), *s.x)
         known: dict[Any, Any] = dict(zip(nodes, map(float, values), strict=True))
         own = evaluate(tuple(self.graph.inputs.values()), known, FLOAT) if inputs is None else inputs
         return self.study.first_order.slopes_at(known | dict(zip(s.inputs.values(), own, strict=True)), single=single)
@@ -315,7 +320,7 @@ class Equations(Result):
         return {letters.symbols[j].name: solved.combined({j: 1}, "") for j in known}
 
     def rhs(self, target: str | None = None) -> RightHandSide:
-        """The right-hand side `rhs(t, x, p, inputs=())`, x = q then u.
+        """The right-hand side `rhs(t, x, p, inputs=())`, x = q, then u, then z.
 
         Args:
             target: "numpy", "c", or None: C where there is a compiler, else numpy, said once on stderr.
@@ -399,7 +404,7 @@ class Equations(Result):
     def start(
         self, parameters: Mapping[str, float] | None = None, start: Mapping[str, float] | None = None
     ) -> np.ndarray:
-        """x at the start, q then u, from the model's start values and those that replace them; the constraints hold
+        """x at the start, q, u and z, from the model's start values and those that replace them; the constraints hold
         there.
 
         Raises:

@@ -91,7 +91,7 @@ class Generated:
         if not (system.free or system).constraints.closing:
             return []
         symbols, found = system.symbols, []
-        groups = ((*symbols.q, *symbols.u), tuple(symbols.parameters.values()))
+        groups = (symbols.x, tuple(symbols.parameters.values()))
         for place in (next(iter(supply), None) for _, supply in consistent_states(system)):
             if place is not None:
                 x, p = ([float(place.state[s]) for s in group] for group in groups)
@@ -264,7 +264,7 @@ class Generated:
         """Checks of what FMUs declare of their variables."""
         symbols = self.equations.graph.symbols
         x0, p0 = (() if each is None else each.tolist() for each in (self._start.x0, self._start.p0))
-        states = dict(zip((x.name for x in (*symbols.q, *symbols.u)), x0, strict=bool(len(x0))))
+        states = dict(zip((x.name for x in symbols.x), x0, strict=bool(len(x0))))
         given = {name: x for name, x in zip(symbols.parameters, p0, strict=False) if x == x}
         for path, content in self.texts.items():
             if path.endswith(".fmu") and isinstance(content, bytes):

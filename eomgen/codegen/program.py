@@ -121,7 +121,7 @@ class Program:
     """A function of (t, x, p, inputs), its statements in the order in which they are run.
 
     Args:
-        symbols: the symbols of the outputs: x = (q, u), p, inputs and t are in symbols.
+        symbols: the symbols of the outputs: x = (q, u, z), p, inputs and t are in symbols.
         defaults: the inputs' own expressions in t and parameters, used where the caller gives none.
         preamble: statements that only `defaults` need.
         hoisted: statements that depend on the parameters alone.
@@ -145,8 +145,8 @@ class Program:
 
     @property
     def states(self) -> tuple[Node, ...]:
-        """x = (q, u)"""
-        return self.symbols.q + self.symbols.u
+        """x = (q, u, z)"""
+        return self.symbols.x
 
     @property
     def moving(self) -> tuple[Node, ...]:
@@ -164,14 +164,15 @@ class Program:
 
 
 def right_hand_side(equations: EquationsOfMotion) -> Program:
-    """The right-hand side dx = (N u + nu, a), by the way that takes the fewest operations.
+    """The right-hand side dx = (N u + nu, a, z'), by the way that takes the fewest operations.
 
     M a = forcing, or with constraint rows  [[M, -J^T], [J, 0]] [a; lam] = [forcing; -gamma].
 
     Raises:
         DerivationError: the mass matrix is singular at all states.
     """
-    return program_in_motion((*kinematic_rates(equations), *equations.symbols.a), equations)
+    outputs = (*kinematic_rates(equations), *equations.symbols.a, *equations.system.scope.state_rates)
+    return program_in_motion(outputs, equations)
 
 
 def program_in_motion(outputs: ScalarRow, equations: EquationsOfMotion) -> Program:
@@ -348,7 +349,7 @@ def _scheduled(moving: Sequence[Node], rounds: Sequence[Sequence[Solve]]) -> tup
 
 
 def _refuse_strangers(needed: Sequence[Node], symbols: Symbols, others: Sequence[Node]) -> None:
-    arguments = {symbols.t, *symbols.q, *symbols.u, *symbols.parameters.values(), *symbols.inputs.values(), *others}
+    arguments = {symbols.t, *symbols.x, *symbols.parameters.values(), *symbols.inputs.values(), *others}
     strangers = [x.name for x in needed if x.op == "symbol" and x not in arguments]
     if strangers:
         raise DerivationError(

@@ -34,8 +34,8 @@ _said: set[str] = set()
 class RightHandSide:
     """A program as a function; safe to call from several threads.
 
-    `rhs(t, x, p, inputs=())` -> dx, a new array; x = (q, u) in the order of `coordinates`, `speeds`; p in the order of
-    `parameters`; inputs in that of `inputs`, or () for the model's own expressions.
+    `rhs(t, x, p, inputs=())` -> dx, a new array; x = (q, u, z) in the order of `coordinates`, `speeds`, `states`; p in
+    that of `parameters`; inputs in that of `inputs`, or () for the model's own expressions.
 
     Args:
         program: the compiled program.
@@ -49,6 +49,7 @@ class RightHandSide:
         self.program, self.target = program, target
         self.coordinates = tuple(x.name for x in symbols.q)
         self.speeds = tuple(x.name for x in symbols.u)
+        self.states = tuple(x.name for x in symbols.z)
         self.parameters, self.inputs = tuple(symbols.parameters), tuple(symbols.inputs)
         self.x0 = None if x0 is None else np.array(x0, dtype=float)
         self.p0 = None if p0 is None else np.array(p0, dtype=float)
@@ -65,7 +66,7 @@ class RightHandSide:
             UsageError: x, p or inputs of the wrong length.
         """
         if len(x) != self._states:
-            raise _wrong_length("x", self.coordinates + self.speeds, len(x))
+            raise _wrong_length("x", self.moving, len(x))
         key = np.asarray(p, dtype=float).tobytes()
         known = self._known
         if key != known[0]:
@@ -130,8 +131,13 @@ class RightHandSide:
         return _compiled_again, (self.program, None if self.target == "c" else self.target, self.x0, self.p0)
 
     def __repr__(self) -> str:
-        arguments = f"x = ({', '.join(self.coordinates + self.speeds)}), p = ({', '.join(self.parameters)})"
+        arguments = f"x = ({', '.join(self.moving)}), p = ({', '.join(self.parameters)})"
         return f"<right-hand side in {self.target}: {arguments}>"
+
+    @property
+    def moving(self) -> tuple[str, ...]:
+        """Everything in x = (q, u, z) by name."""
+        return self.coordinates + self.speeds + self.states
 
     def _constants(self, p: Any) -> Any:
         return self._functions.constants(self._checked(p))

@@ -8,7 +8,7 @@ from eomgen.documents import energy_steps, motion_steps
 from eomgen.documents.document import Document, document_of, with_symbols
 from eomgen.documents.energy_steps import MAGGI, Momenta, balance_step, integral_steps, maggi_equations, twists_step
 from eomgen.documents.equation_steps import EquationSteps, Sides, equations_of, multiplier_forces, sides_of
-from eomgen.documents.motion_steps import setting_steps
+from eomgen.documents.motion_steps import setting_steps, states_step
 from eomgen.documents.reaction_steps import (
     along_the_motion,
     kinetostatic_steps,
@@ -73,7 +73,7 @@ def derivation_of(
     if method == "kinetostatic" and not isinstance(letters, str):
         last = (*last, *along_the_motion(equations, reader, letters))
     last = (*integral_steps(equations, reader, in_time), *last)
-    written = Written((*setting_steps(system), *steps, *result.steps, *last), result.equations, result.definitions)
+    written = Written((*setting_steps(system), *steps, *result.steps, *states_step(system, reader), *last), result.equations, result.definitions)
     graph, taken = equations.symbols.graph, {*system.scope.names, *(symbol.name for symbol, _ in result.definitions)}
     taken |= set() if isinstance(letters, str) else letters.names
     written = with_coefficients_throughout(written, result.coefficients)

@@ -215,7 +215,7 @@ def taken_in(equations: EquationsOfMotion) -> set[str]:
 
 def _symbols(equations: EquationsOfMotion) -> tuple[Node, ...]:
     s = equations.symbols
-    return (s.t, *s.parameters.values(), *s.inputs.values(), *s.q, *s.u, *s.a, *s.lam)
+    return (s.t, *s.parameters.values(), *s.inputs.values(), *s.x, *s.a, *s.lam)
 
 
 def printed(system: System, equations: Sequence[Equation]) -> list[Statement]:

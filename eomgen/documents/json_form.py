@@ -167,6 +167,7 @@ def equations_payload(equations: EquationsOfMotion, method: str, found: Texts) -
         "method": method,
         "coordinates": [q.name for q in symbols.q],
         "speeds": [u.name for u in symbols.u],
+        "states": [z.name for z in symbols.z],
         "parameters": {name: float(values[name]) if name in values else None for name in symbols.parameters},
         "inputs": {name: part.value.text for name, part in model.inputs.items()},
         **({"definitions": [list(pair) for pair in definitions]} if definitions else {}),
@@ -174,6 +175,7 @@ def equations_payload(equations: EquationsOfMotion, method: str, found: Texts) -
         "unknowns": [x.name for x in (*symbols.a, *symbols.lam)],
         "generalized_forces": dict(zip((u.name for u in symbols.u), written["generalized_forces"], strict=True)),
         "equations": [f"{left} = {right}" for left, right in sides],
+        "state_rates": dict(zip((z.name for z in symbols.z), written["state_rates"], strict=True)),
         **reactions_payload(equations, _taken(equations) | {name for name, _ in definitions}),
     }
 
@@ -223,6 +225,7 @@ def _fields(equations: EquationsOfMotion) -> dict[str, Field]:
         "potential_energy": Field((equations.V,), single=True),
         "generalized_forces": Field(equations.Q),
         "equations": Field(_sides(equations), rows=len(equations.symbols.u)),
+        "state_rates": Field(equations.system.scope.state_rates),
     }
 
 
@@ -253,5 +256,5 @@ def _texts(
 def _taken(equations: EquationsOfMotion) -> frozenset[str]:
     """Names that no named part may have."""
     s = equations.symbols
-    symbols: tuple[Node, ...] = (s.t, *s.parameters.values(), *s.inputs.values(), *s.q, *s.u, *s.a, *s.lam)
+    symbols: tuple[Node, ...] = (s.t, *s.parameters.values(), *s.inputs.values(), *s.x, *s.a, *s.lam)
     return frozenset(symbol.name for symbol in symbols)

@@ -17,7 +17,7 @@ from eomgen.mechanics.constraints import Rank, Row
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import BodyEnergy, BodyLink, Scope
 from eomgen.mechanics.start import ExactStart
-from eomgen.model import Coordinate, Input, Model, Parameter, PointForce
+from eomgen.model import Coordinate, Input, Model, Parameter, PointForce, StateVariable
 from eomgen.symbolic.expression import Expression, Node, Scalar, Vector, is_zero
 from eomgen.symbolic.print import to_text
 
@@ -180,7 +180,7 @@ def _gap_name(row: Row) -> Name:
 
 PARAMETERS = ("parameter", "meaning", "unit", "value")
 COORDINATES = ("coordinate", "meaning", "unit", "start")
-Quantified = Parameter | Coordinate | Input | None
+Quantified = Parameter | Coordinate | StateVariable | Input | None
 INPUTS = ("input", "meaning", "unit", "value")
 
 
@@ -352,6 +352,11 @@ def _coordinates(system: System) -> Step:
             what = "its acceleration, as given" if second else "its rate, as given"
             rows.append(Meaning(x, what, unit_per(unit, "s^2" if second else "s")))
     rows += _speeds(system, begun)
+    for z in symbols.z:
+        state = model.states[z.name]
+        start = "0" if state.start is None else start_shown(state.start, values, state)
+        rows.append(Meaning(z, state.about or "state of first order", _unit(state), start))
+        rows.append(Meaning(Rate(z), "its rate", unit_per(_unit(state), "s")))
     rows.append(Meaning(symbols.t, "time", "s"))
     statements: list[Statement] = [Table(COORDINATES, tuple(rows))]
     driven: list[Statement] = []
@@ -361,6 +366,17 @@ def _coordinates(system: System) -> Step:
     if driven:
         statements += [prose("Driven coordinates move as given:"), *driven]
     return Step("coordinates", "Coordinates", tuple(statements))
+
+
+def states_step(system: System, reader: Reader) -> tuple[Step, ...]:
+    """The rates of the states of first order; no step where there are none."""
+    scope = system.scope
+    if not scope.symbols.z:
+        return ()
+    rates: list[Pair] = [(Rate(z), rate) for z, rate in zip(scope.symbols.z, scope.state_rates, strict=True)]
+    several = len(rates) > 1
+    words = "The states of first order change as declared:" if several else "The state of first order changes as declared:"
+    return (Step("states", "States of first order", (prose(words), *page(reader, rates))),)
 
 
 def _as_given(scope: Scope, q: Node, rate: Scalar) -> list[Statement]:
@@ -384,7 +400,7 @@ def _begun(system: System) -> dict[str, str]:
     except (DerivationError, MissingValues):  # the constraints do not close there: whoever needs a state says so
         return {}
     coordinates, reported = system.scope.model.coordinates, dict[str, str]()
-    for x in (x for x in (*system.symbols.q, *system.symbols.u) if x.name in moved):
+    for x in (x for x in system.symbols.x if x.name in moved):
         part = coordinates.get(x.name.removesuffix("'"))
         if start.numbers:
             reported[x.name] = _in_unit(start.numbers[x], part)

@@ -176,7 +176,7 @@ def _sampled(
     """
     symbols = system.symbols
     copies, width = size
-    own = (symbols.t, *symbols.q, *symbols.u, *symbols.a)
+    own = (symbols.t, *symbols.x, *symbols.a)
     flat: list[Scalar] = []
     for k in range(copies):
         other = {x: symbols.graph.symbol(f"({x.name}, {k})") for x in own}

@@ -261,7 +261,7 @@ def _measured(symbols: Symbols, data: Data) -> tuple[np.ndarray, np.ndarray, Any
         missing = next(name for name in names if name not in given)
         raise UsageError(f"the data have no column '{missing}'", fix="give all inputs, or none")
     inputs: Any = np.column_stack([given[name] for name in names]) if given else ()
-    return t, np.column_stack([columns[x.name] for x in (*symbols.q, *symbols.u, *symbols.a)]), inputs
+    return t, np.column_stack([columns[x.name] for x in (*symbols.x, *symbols.a)]), inputs
 
 
 def _along(J: np.ndarray, size: int) -> np.ndarray:

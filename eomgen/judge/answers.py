@@ -245,7 +245,7 @@ def _wrong(case: Case, written: HandEquation, kind: str, at: Instant, left: Answ
 def _place(case: Case, written: HandEquation, at: Instant) -> dict[Node, Scalar] | None:
     """Coordinates, speeds, accelerations at an instant; {} without them; None where they have no closed form."""
     found = dict[Node, Scalar]()
-    for x in (*case.system.symbols.q, *case.system.symbols.u):
+    for x in case.system.symbols.x:
         with suppress(EomgenError):
             name = parse(x.name)
             value = case.exact(case.sides(replace(written, left=name, right=name), at)[0])

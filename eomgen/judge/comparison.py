@@ -382,7 +382,7 @@ def first_order_place(
         about: the place that is meant; None: 0, or an equilibrium.
     """
     symbols, rows = case.system.symbols, case.rows
-    moving = (*symbols.q, *symbols.u, *symbols.a)
+    moving = (*symbols.x, *symbols.a)
     if case.closing or not rows or not depends_on(scalar, symbols.a):
         return None
     of_speeds = not is_linear((scalar,), symbols.u)  # who keeps their products approximates nothing

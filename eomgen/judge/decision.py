@@ -223,7 +223,7 @@ def _combined_in_digits(
     on_constraints: bool,
 ) -> Follows:
     """The same at real states."""
-    moved = {*system.symbols.q, *system.symbols.u} if on_constraints else set[Node]()
+    moved = {*system.symbols.x} if on_constraints else set[Node]()
     states = partial(states_of, system, flat, on_constraints=on_constraints)
     found = combined(row, rows, states, moved)
     return Follows(found.holds, found.rows, found.way)

@@ -309,7 +309,7 @@ class Authored:
         formulas = known if self.is_still else (*self.case.rows, *known)
         if not self.is_still:
             held = {*symbols_of(formulas)}
-            atoms += [x for x in (*symbols.q, *symbols.u) if x in held]
+            atoms += [x for x in symbols.x if x in held]
         angles = angles_in(formulas)
         angles += [x for x in atoms if str(self.case.edits.dimensions.get(x.name, "")) in ANGLES[:2]]
         waves = [x.graph.call(op, x) for x in dict.fromkeys(angles) for op in ("sin", "cos")]

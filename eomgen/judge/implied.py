@@ -214,7 +214,7 @@ def simplest_explanation(
 def implied_by_course(case: Case, known: Mapping[Node, Scalar]) -> Implied | None:
     """Remainder of the equation of motion for a coordinate as a function of time; None: it needs the others."""
     symbols = case.system.symbols
-    others = [x for x in (*symbols.q, *symbols.u, *case.forced) if x not in known]
+    others = [x for x in (*symbols.x, *case.forced) if x not in known]
     for k, (row, a) in enumerate(zip(case.rows, symbols.a, strict=True)):
         left = substituted((row, derivative(row, a)), known)
         if a in known and not any(depends_on(x, others) for x in left):
@@ -347,7 +347,7 @@ def _at_instant(case: Case, written: HandEquation, at: WrittenEquation, author: 
     if not start or at.left.text not in (q.name, u.name):
         return
     (reached,) = substituted((case.value(at.right),), start)
-    if depends_on(reached, (*symbols.q, *symbols.u, symbols.t)):
+    if depends_on(reached, (*symbols.x, symbols.t)):
         return
     steady = not depends_on(case.rows[0], (symbols.t, q, u))
     q1: Scalar | None = reached

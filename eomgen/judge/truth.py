@@ -190,7 +190,7 @@ def says_nothing(case: Case, written: HandEquation) -> bool:
 
 def _is_constant_of_potential(case: Case, scalar: Scalar) -> bool:
     symbols = case.system.symbols
-    slopes = gradient(scalar, (symbols.t, *symbols.q, *symbols.u))
+    slopes = gradient(scalar, (symbols.t, *symbols.x))
     return bool(is_zero_everywhere(case.system, *slopes).holds)
 
 
@@ -602,7 +602,7 @@ def _put_in(
     given = tuple(scope.names[x.name] - value for x, value in known.items() if not x.name.endswith("''"))
     given = substituted(substituted(given, case.start), values) if values else given
     begins = True if any_start else case.starts_at_zero(*given)
-    others = [x for x in (*symbols.q, *symbols.u) if x not in known]
+    others = [x for x in symbols.x if x not in known]
     if not case.rows:
         return None
     left = [row for row in substituted(case.rows, {**known, **values}) if not depends_on(row, (*others, *case.forced))]
@@ -683,7 +683,7 @@ class InSmallMotions:
 def small_motions(whole: Comparison) -> Iterator[InSmallMotions]:
     """The comparisons with linearized equations of an equation that is linear, where the model's are not."""
     symbols = whole.case.system.symbols
-    moving = (*symbols.q, *symbols.u, *symbols.a)
+    moving = (*symbols.x, *symbols.a)
     if whole.what != "motion" or whole.case.closing or len(whole.rows) > MOST_DEGREES_OF_FREEDOM or whole.is_long:
         return
     if not is_linear((whole.scalar,), moving) or is_linear(whole.rows, moving):

@@ -324,7 +324,7 @@ def _joined(case: Case, found: Explanation, causes: list[Cause]) -> list[Cause]:
     symbols = case.system.symbols
     constant = not depends_on(
         legible(ratio, Work.FORMULA, case.system.scope.positive, LONG),
-        (symbols.t, *symbols.q, *symbols.u, *case.forced),
+        (symbols.t, *symbols.x, *case.forced),
     )
     name, term = causes[k].quantity, causes[k].term
     what = f"{name}, {term}," if term and term not in name else name

@@ -230,6 +230,9 @@ from eomgen.model.parts import Output as Output
 # A constant of the system
 from eomgen.model.parts import Parameter as Parameter
 
+# A state of first order: a current, a pressure, a temperature, an integral, z' = `rate`
+from eomgen.model.parts import StateVariable as StateVariable
+
 # Massless two-force members between hinges: nodes and members `n1-n2`
 from eomgen.model.parts import Truss as Truss
 from eomgen.model.quantities import Typed as Typed

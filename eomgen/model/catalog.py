@@ -6,11 +6,11 @@ from typing import Any
 
 from eomgen.frozen import dataclass
 from eomgen.model.diagnostics import Diagnostic
-from eomgen.model.fields import CONFIGURATION, MOTION, PARAMETERS, RATES, SPEEDS, TIME, Leaf, WrittenEquation
+from eomgen.model.fields import CONFIGURATION, MOTION, PARAMETERS, RATES, SPEEDS, STATE, TIME, Leaf, WrittenEquation
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression import Expression
 
-SYMBOL_TABLES = ("parameters", "coordinates", "speeds", "inputs", "unknowns")
+SYMBOL_TABLES = ("parameters", "coordinates", "speeds", "states", "inputs", "unknowns")
 OBJECT_TABLES = ("bodies", "trusses", "constraints")
 
 
@@ -38,6 +38,7 @@ class Catalog:
             "parameters": "parameter",
             "coordinates": "coordinate",
             "speeds": "speed",
+            "states": "state",
             "inputs": "input",
             "unknowns": "unknown",
         }
@@ -57,7 +58,8 @@ class Catalog:
         speeds = frozenset(self.table("speeds"))
         accelerations = frozenset([name + "''" for name in q] + [name + "'" for name in speeds])
         time = constant | {"t"}
-        motion = time | q | rates | speeds | frozenset(self.table("inputs"))
+        states = frozenset(name + dot for name in self.table("states") for dot in ("", "'"))
+        motion = time | q | rates | speeds | states | frozenset(self.table("inputs"))
         return {
             PARAMETERS: constant,
             TIME: time,
@@ -65,6 +67,7 @@ class Catalog:
             RATES: time | q | rates,
             SPEEDS: time | q | rates | speeds,
             MOTION: motion,
+            STATE: motion | accelerations,
             "": motion | accelerations,
         }
 

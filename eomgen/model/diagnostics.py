@@ -86,6 +86,7 @@ TABLES = {
     "parameters": "parameter",
     "coordinates": "coordinate",
     "speeds": "speed",
+    "states": "state",
     "inputs": "input",
     "points": "point",
     "bodies": "body",

@@ -48,14 +48,14 @@ class Names:
     def __init__(self, catalog: Catalog) -> None:
         self.inference = Inference()
         self.declared: dict[str, Unit] = {}
-        for table in ("parameters", "coordinates", "inputs", "unknowns"):
+        for table in ("parameters", "coordinates", "states", "inputs", "unknowns"):
             parts = catalog.table(table).items()
             self.declared |= {name: part.unit for name, part in parts if part is not None and part.unit is not None}
         self._known = {name: dimension_of_unit(unit) for name, unit in self.declared.items()}
         turns = (getattr(body.joint, "omega", None) for body in catalog.table("bodies").values() if body is not None)
         self._known |= {name: SECOND.raised(-1) for names in turns for name in names or ()}
         self._known |= {"t": SECOND, "pi": NUMBER}
-        self.moves = frozenset(catalog.table("coordinates"))
+        self.moves = frozenset((*catalog.table("coordinates"), *catalog.table("states")))
         self.parameters = frozenset(catalog.table("parameters").keys() & self.declared)
 
     def of(self, name: str, also: dict[str, Dimension] | None = None) -> Dimension:
@@ -165,6 +165,8 @@ def _needed(leaf: Leaf, names: Names) -> Dimension | None:
     key = str(leaf.path[-1])
     if table == "coordinates" and key in RATES:
         return names.of(str(leaf.path[1]) + "'" * RATES[key])
+    if table == "states" and key in RATES:
+        return names.of(str(leaf.path[1]) + "'" * RATES[key])
     if table in ("parameters", "inputs") and len(leaf.path) < 4:
         return names.of(str(leaf.path[1]))
     if table == "speeds":
@@ -197,6 +199,6 @@ def _diagnostic(catalog: Catalog, leaf: Leaf, clash: Clash, names: Names) -> Dia
 
 def _own_text(leaf: Leaf) -> str | None:
     """The unit of a field as its rule, or its part, writes it."""
-    if leaf.path[0] == "outputs" or (leaf.path[0] == "coordinates" and leaf.path[-1] in ("start", "near", "motion")):
+    if leaf.path[0] == "outputs" or (leaf.path[0] in ("coordinates", "states") and leaf.path[-1] in ("start", "near", "motion")):
         return None if leaf.part is None or leaf.part.unit is None else str(leaf.part.unit.text)
     return getattr(leaf.rule, "unit", None)

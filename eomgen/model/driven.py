@@ -29,7 +29,7 @@ def law_of(model: Model, value: Any) -> Expression | None:
         law = as_expression(value)
     except ExpressionError:
         return None  # reported where it is read as an input
-    moving = {*model.coordinates, *(f"{q}'" for q in model.coordinates), *model.speeds}
+    moving = {*model.coordinates, *(f"{q}'" for q in model.coordinates), *model.speeds, *model.states}
     return law if law.names & moving else None
 
 

@@ -24,7 +24,8 @@ TIME = "parameters and time"
 CONFIGURATION = "parameters, coordinates and time"
 RATES = "parameters, coordinates, their rates and time"
 SPEEDS = "parameters, coordinates, their rates, speeds and time"
-MOTION = "parameters, coordinates, rates, speeds, inputs and time"
+MOTION = "parameters, coordinates, rates, speeds, states, inputs and time"
+STATE = "parameters, coordinates, rates, speeds, accelerations, states, inputs and time"
 EVERY = "every"  # event of a run
 EVERYTHING = "all names, accelerations and functions of the motion"
 

@@ -2,7 +2,7 @@
 
     [a + b]: [a] = [b]      [a b] = [a] [b]      [a^n] = n [a]      sin a, exp a: [a] = 1
 
-A dimension is a product of powers of m, kg, s and of unknowns; an equation between two is linear in the exponents.
+A dimension is a product of powers of m, kg, s, A, K and of unknowns; an equation between two is linear in the exponents.
 Angles are numbers. A plain number fits anything: it is an unknown of its own.
 """
 
@@ -18,24 +18,31 @@ from eomgen.frozen import dataclass
 from eomgen.model.quantities import Unit
 from eomgen.symbolic.expression import Call, Expression, Fraction, is_exact, token_at
 
-BASE = ("kg", "m", "s")
+BASE = ("kg", "m", "s", "A", "K")
 LARGEST_COEFFICIENT = 12  # of a number that textbooks write before parameters: 1/2 k x^2, 4/3 r, m l^2/12
 ROUND = (5, 10)  # more often a value, as of g, than a coefficient
 TIME = frozenset(("t", "pi"))
 KEEPS = ("abs",)
 ALL_SAME = ("min", "max")
 _KNOWN = {
-    (1, 1, -2): "N",
-    (1, 2, -2): "N*m",
-    (1, 0, -2): "N/m",
-    (1, 0, -1): "N*s/m",
-    (1, -1, -2): "Pa",
-    (1, 2, -3): "W",
+    (1, 1, -2, 0, 0): "N",
+    (1, 2, -2, 0, 0): "N*m",
+    (1, 0, -2, 0, 0): "N/m",
+    (1, 0, -1, 0, 0): "N*s/m",
+    (1, -1, -2, 0, 0): "Pa",
+    (1, 2, -3, 0, 0): "W",
+    (1, 2, -3, -1, 0): "V",
+    (1, 2, -3, -2, 0): "ohm",
+    (1, 2, -2, -2, 0): "H",
+    (-1, -2, 4, 2, 0): "F",
+    (1, 2, -2, -1, 0): "N*m/A",
+    (1, 2, -4, -1, 0): "V/s",
+    (1, 1, -2, -1, 0): "N/A",
 }
 
 
 class Dimension(dict[Any, Fraction]):
-    """The exponents of m, kg, s and of unknowns; none is 0."""
+    """The exponents of m, kg, s, A, K and of unknowns; none is 0."""
 
     def times(self, other: Mapping[Any, Fraction], power: Any = 1) -> Dimension:
         """self * other^power."""
@@ -85,6 +92,10 @@ _KINDS = {
     (("s", -1),): "an angular velocity",
     (("kg", 1), ("m", 1), ("s", -2)): "a force",
     (("kg", 1), ("m", 2), ("s", -2)): "a moment or an energy",
+    (("A", 1),): "a current",
+    (("kg", 1), ("m", 2), ("s", -3), ("A", -1)): "a voltage",
+    (("K", 1),): "a temperature",
+    (("kg", 1), ("m", -1), ("s", -2)): "a pressure",
 }
 KINDS: dict[frozenset[tuple[Any, Any]], str] = {frozenset(powers): kind for powers, kind in _KINDS.items()}
 """What a dimension is called, where it has a name."""
@@ -92,8 +103,7 @@ KINDS: dict[frozenset[tuple[Any, Any]], str] = {frozenset(powers): kind for powe
 
 def dimension_of_unit(unit: Unit) -> Dimension:
     """Dimension of a declared unit."""
-    length, mass, time = unit.dimension
-    return Dimension({base: Fraction(n) for base, n in (("m", length), ("kg", mass), ("s", time)) if n})
+    return Dimension({base: Fraction(n) for base, n in zip(("m", "kg", "s", "A", "K"), unit.dimension, strict=True) if n})
 
 
 class Inference:

@@ -41,6 +41,7 @@ from eomgen.model.parts import (
     Parameter,
     Question,
     Speed,
+    StateVariable,
     Truss,
     Unknown,
 )
@@ -81,6 +82,7 @@ class Model(Numbers, Connections, UnitsOfNames, Part):
         parameters: constants.
         coordinates: what moves.
         speeds: generalized speeds that are not rates.
+        states: of first order, z' = rate: currents, pressures, temperatures.
         inputs: known functions of time that a caller may replace.
         points: of the ground, fixed [m].
         bodies: what has a frame: its mass, points, joint.
@@ -106,6 +108,7 @@ class Model(Numbers, Connections, UnitsOfNames, Part):
     parameters: Annotated[Table[Parameter], _table(Parameter, "parameter")] = Table()
     coordinates: Annotated[Table[Coordinate], _table(Coordinate, "coordinate")] = Table()
     speeds: Annotated[Table[Speed], _table(Speed, "speed")] = Table()
+    states: Annotated[Table[StateVariable], _table(StateVariable, "state")] = Table()
     inputs: Annotated[Table[Input], _table(Input, "input")] = Table()
     points: GroundPoints = Table()
     bodies: Annotated[Table[Body], _table(Body, "body")] = Table()
@@ -337,7 +340,7 @@ class Model(Numbers, Connections, UnitsOfNames, Part):
         """The times of the samples of every motion and input, ascending [s]."""
         laws = (
             leaf.value
-            for table in (self.coordinates, self.inputs, self.constraints)
+            for table in (self.coordinates, self.inputs, self.states, self.constraints)
             for name, part in table.items()
             for leaf in part.leaves((name,))
         )
@@ -360,7 +363,7 @@ class Model(Numbers, Connections, UnitsOfNames, Part):
         return bool(self.changing)
 
     def _given_at_start(self, name: str) -> list[Expression]:
-        """Expressions of the start of a coordinate or speed; for a declared speed without one, those of its rates."""
+        """Expressions of the start of a coordinate, speed or state; for a declared speed without one, those of its rates."""
         if name in self.coordinates:
             part = self.coordinates[name]
             found = [part.start if part.near is None else None]
@@ -370,16 +373,18 @@ class Model(Numbers, Connections, UnitsOfNames, Part):
             found = [self.coordinates[q].speed for q in rates]
         elif name in self.speeds:
             found = [self.speeds[name].start]
+        elif name in self.states:
+            found = [self.states[name].start]
         else:
             found = [self.coordinates[name[:-1]].speed if name[:-1] in self.coordinates else None]
         return [value for value in found if value is not None]
 
     def is_guess(self, name: str) -> bool:
-        """True if the start of a coordinate or speed is not given, or is only a guess by `near`."""
+        """True if the start of a coordinate, speed or state is not given, or is only a guess by `near`."""
         return not self._given_at_start(name)
 
     def is_typed(self, name: str) -> bool:
-        """True if a person typed the start of a coordinate or speed, in place of what the model declares."""
+        """True if a person typed the start of a coordinate, speed or state, in place of what the model declares."""
         return any(value.typed for value in self._given_at_start(name))
 
 

@@ -38,6 +38,7 @@ from eomgen.model.kinds import (
     RateInTime,
     RateLaw,
     SpaceDirection,
+    StateRate,
     SymbolField,
     Text,
     TimeLaw,
@@ -133,6 +134,29 @@ class Speed(Part):
     title: ClassVar[str] = "speed"
     rate: RateLaw | None = None
     start: Formula | None = None
+    about: Text | None = None
+    symbol: SymbolField | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class StateVariable(Part):
+    """A state of first order: a current, a pressure, a temperature, an integral, z' = `rate`.
+
+    Its rate may hold the whole state, accelerations and inputs, and forces may depend on it; it moves no body itself.
+
+    Args:
+        rate: z' [its unit in SI per second].
+        start: z at the start, t = 0 (None: 0).
+        unit: in which `start` is given; it is in SI already.
+        about: a remark, printed in the derivation.
+        symbol: in formulas, in LaTeX (None: by its name); its rate gets a dot.
+    """
+
+    title: ClassVar[str] = "state"
+    in_unit: ClassVar[tuple[str, ...]] = ("start",)
+    rate: StateRate
+    start: Formula | None = None
+    unit: UnitText | None = None
     about: Text | None = None
     symbol: SymbolField | None = None
 

@@ -1,6 +1,6 @@
 """Text -> Unit, and what a person types with one: `45 deg`, `300 rpm`.
 
-Text -> Unit: an exact factor to SI and the dimension (m, kg, s); the radian is one, and remembered.
+Text -> Unit: an exact factor to SI and the dimension (m, kg, s, A, K); the radian is one, and remembered.
 
 deg = pi/180 rad,  rev = 2 pi rad,  kN = 1000 kg m/s^2
 """
@@ -37,7 +37,7 @@ class Unit:
         text: as written (not compared: that is `fits`).
         factor: exact, positive.
         pi_power: of the pi in an angle: 1 for deg, -1 for 1/deg.
-        length, mass, time: exponents of m, kg, s.
+        length, mass, time: exponents of m, kg, s; current, temperature: of A, K.
         angle: exponent of rad, which is 1 but distinguishes rad/s from 1/s.
         cycles: exponent of the Hz in it: a frequency counts cycles, an angular velocity radians.
     """
@@ -50,6 +50,8 @@ class Unit:
     time: int = 0
     angle: int = 0
     cycles: int = 0
+    current: int = 0
+    temperature: int = 0
 
     @classmethod
     def parse(cls, text: str) -> Unit:
@@ -89,9 +91,9 @@ class Unit:
         return self.text
 
     @property
-    def dimension(self) -> tuple[int, int, int]:
-        """The exponents of m, kg, s."""
-        return self.length, self.mass, self.time
+    def dimension(self) -> tuple[int, int, int, int, int]:
+        """The exponents of m, kg, s, A, K."""
+        return self.length, self.mass, self.time, self.current, self.temperature
 
     def fits(self, other: Unit) -> bool:
         """True where a value in this unit can be given in the other.
@@ -125,7 +127,14 @@ class Unit:
             return self.text
         if self.dimension in _SI_NAMES:
             return _SI_NAMES[self.dimension]
-        powers = (("rad", min(self.angle, 1)), ("kg", self.mass), ("m", self.length), ("s", self.time))
+        powers = (
+            ("rad", min(self.angle, 1)),
+            ("kg", self.mass),
+            ("m", self.length),
+            ("s", self.time),
+            ("A", self.current),
+            ("K", self.temperature),
+        )
         above = [name if n == 1 else f"{name}^{n}" for name, n in powers if n > 0]
         below = [name if n == -1 else f"{name}^{-n}" for name, n in powers if n < 0]
         under = f"/({'*'.join(below)})" if len(below) > 1 else f"/{below[0]}" if below else ""
@@ -152,18 +161,22 @@ class Unit:
         )
 
     def _exponents(self) -> tuple[int, ...]:
-        return self.pi_power, self.length, self.mass, self.time, self.angle, self.cycles
+        return (*(self.pi_power, self.length, self.mass, self.time, self.angle), self.cycles, *self.dimension[3:])
 
     def _made(self, factor: Fraction, *exponents: int) -> Unit:
         return Unit(self.text, factor, *exponents)
 
 
-_SI_NAMES = {(1, 1, -2): "N", (2, 1, -3): "W", (-1, 1, -2): "Pa"}
+_SI_NAMES = {(1, 1, -2, 0, 0): "N", (2, 1, -3, 0, 0): "W", (-1, 1, -2, 0, 0): "Pa"}
+_SI_NAMES |= {(2, 1, -3, -1, 0): "V", (2, 1, -3, -2, 0): "ohm", (2, 1, -2, -2, 0): "H", (-2, -1, 4, 2, 0): "F"}
+_SI_NAMES |= {(2, 1, -2, -1, 0): "Wb", (0, 1, -2, -1, 0): "T", (0, 0, 1, 1, 0): "C"}
 
 
 def _table() -> dict[str, Unit]:
-    def unit(name: str, factor: str | int = 1, m: int = 0, kg: int = 0, s: int = 0) -> tuple[str, Unit]:
-        return name, Unit(name, fraction_of(str(factor)), 0, m, kg, s)
+    def unit(
+        name: str, factor: str | int = 1, m: int = 0, kg: int = 0, s: int = 0, A: int = 0, K: int = 0
+    ) -> tuple[str, Unit]:
+        return name, Unit(name, fraction_of(str(factor)), 0, m, kg, s, current=A, temperature=K)
 
     entries = [
         unit("1"),
@@ -175,6 +188,18 @@ def _table() -> dict[str, Unit]:
         *(unit(n, f, 2, 1, -2) for n, f in (("J", 1), ("mJ", "0.001"), ("kJ", 1000), ("MJ", 10**6))),
         *(unit(n, f, 2, 1, -3) for n, f in (("W", 1), ("mW", "0.001"), ("kW", 1000), ("MW", 10**6))),
         *(unit(n, f, -1, 1, -2) for n, f in (("Pa", 1), ("kPa", 1000), ("MPa", 10**6), ("GPa", 10**9), ("bar", 10**5))),
+        *(unit(n, f, -1, 1, -2) for n, f in (("mbar", 100), ("hPa", 100))),
+        *(unit(n, f, m=3) for n, f in (("l", "0.001"), ("L", "0.001"), ("ml", "1e-6"), ("mL", "1e-6"))),
+        *(unit(n, f, A=1) for n, f in (("A", 1), ("mA", "0.001"), ("uA", "1e-6"), ("kA", 1000))),
+        *(unit(n, f, s=1, A=1) for n, f in (("C", 1), ("mC", "0.001"), ("uC", "1e-6"))),
+        *(unit(n, f, 2, 1, -3, -1) for n, f in (("V", 1), ("mV", "0.001"), ("uV", "1e-6"), ("kV", 1000))),
+        *(unit(n, f, 2, 1, -3, -2) for n, f in (("ohm", 1), ("mohm", "0.001"), ("kohm", 1000), ("Mohm", 10**6))),
+        *(unit(n, f, -2, -1, 3, 2) for n, f in (("S", 1), ("mS", "0.001"))),
+        *(unit(n, f, 2, 1, -2, -2) for n, f in (("H", 1), ("mH", "0.001"), ("uH", "1e-6"))),
+        *(unit(n, f, -2, -1, 4, 2) for n, f in (("F", 1), ("mF", "0.001"), ("uF", "1e-6"), ("nF", "1e-9"), ("pF", "1e-12"))),
+        *(unit(n, f, 2, 1, -2, -1) for n, f in (("Wb", 1), ("mWb", "0.001"))),
+        *(unit(n, f, 0, 1, -2, -1) for n, f in (("T", 1), ("mT", "0.001"))),
+        *(unit(n, f, K=1) for n, f in (("K", 1), ("mK", "0.001"))),
     ]
     table = dict(entries)
     for name, factor in (("Hz", 1), ("kHz", 1000)):
@@ -194,10 +219,15 @@ def _table() -> dict[str, Unit]:
 UNITS = _table()
 """Every unit by its name."""
 
-for _alias, _name in (("µm", "um"), ("μm", "um"), ("µs", "us"), ("μs", "us"), ("°", "deg")):
+_ALIASES = [("°", "deg"), ("\u2126", "ohm")]
+_ALIASES += [(f"{prefix}Ω", f"{prefix}ohm") for prefix in ("", "k", "m", "M")]
+_ALIASES += [(micro + unit, f"u{unit}") for unit in "m s A C V H F".split() for micro in "µμ"]
+for _alias, _name in _ALIASES:
     UNITS[_alias] = UNITS[_name]
 
 _SPOKEN = {"sec": "s", "second": "s", "meter": "m", "metre": "m", "degree": "deg", "degrees": "deg", "radian": "rad"}
+_SPOKEN |= {"volt": "V", "volts": "V", "ampere": "A", "amps": "A", "amp": "A", "henry": "H", "farad": "F", "weber": "Wb"}
+_SPOKEN |= {"tesla": "T", "kelvin": "K", "liter": "l", "litre": "l", "liters": "l", "litres": "l", "lpm": "l/min"}
 _SPOKEN |= {"radians": "rad", "newton": "N", "kilogram": "kg", "hr": "h", "hour": "h", "rps": "rev/s"}
 _PIECE = re.compile(
     r"(?P<unit>[^\W\d_²³¹⁰⁴-⁹]+|°|1(?![0-9.]))"
@@ -242,7 +272,7 @@ _BEFORE_UNIT = re.compile(r"(?<=[\d.)])\s*(?=[^\W\d]|°)|\s+(?=[^\W\d]|°|1/)")
 Typed = Any
 """A number, a text, (number, unit), a quantity of pint."""
 EXACT_INTEGER = 53  # bits of a whole number that a double holds
-_OF_PINT = {"[length]": "m", "[mass]": "kg", "[time]": "s"}
+_OF_PINT = {"[length]": "m", "[mass]": "kg", "[time]": "s", "[current]": "A", "[temperature]": "K"}
 
 
 def seconds(typed: Any) -> float:
@@ -279,7 +309,7 @@ def read_typed(typed: Any) -> tuple[Expression, Unit | None]:
     if hasattr(typed, "to_base_units") and hasattr(typed, "dimensionality"):
         base = typed.to_base_units()
         if not base.dimensionality.keys() <= _OF_PINT.keys():
-            raise ExpressionError(f"'{typed}' is in units that mechanics does not have", fix="use m, kg, s, rad")
+            raise ExpressionError(f"'{typed}' is in units that mechanics does not have", fix="use m, kg, s, A, K, rad")
         powers = (f"{_OF_PINT[kind]}^{int(power)}" for kind, power in base.dimensionality.items())
         return as_expression(_plain(base.magnitude)), Unit.parse("*".join(powers) or "1")
     return as_expression(_plain(typed)), None

@@ -94,14 +94,14 @@ def with_values(
     for name, typed in (parameters or {}).items():
         if name not in model.parameters:
             what = f"{options[0]}: there is no parameter '{name}'"
-            is_start = name.rstrip("'") in model.coordinates or name in model.speeds
+            is_start = name.rstrip("'") in model.coordinates or name in (*model.speeds, *model.states)
             near = _near(name, model.parameters)
             raise UsageError(what, fix=f"its start is given by {options[1]}" if is_start else near)
         found = _settled(typing, name, typed, options[0])
         changed[name] = _with_value(model.parameters[name], "value", found.value)
         settled.append(found)
     made = model.altered(parameters=Table({**model.parameters, **changed}))
-    coordinates, speeds = dict(model.coordinates), dict(model.speeds)
+    coordinates, speeds, states = dict(model.coordinates), dict(model.speeds), dict(model.states)
     typing = Typing(made, declared)
     for name, typed in (start or {}).items():
         _refuse_given(model, name, options[1])
@@ -112,6 +112,8 @@ def with_values(
         base, value = name.rstrip("'"), replace(found.value, typed=True)
         if name in speeds:
             speeds[name] = speeds[name].altered(start=value)
+        elif name in states:
+            states[name] = _with_value(states[name], "start", value)
         elif name == base:
             coordinates[name] = _with_value(coordinates[name], "start", value).altered(near=None)
         else:
@@ -120,6 +122,7 @@ def with_values(
         "parameters": made.parameters,
         "coordinates": Table(coordinates),
         "speeds": Table(speeds),
+        "states": Table(states),
     }
     try:
         replace(model, **changes)  # what is wrong with a model is wrong with this one
@@ -216,9 +219,9 @@ def _refuse_given(model: Model, name: str, option: str) -> None:
     """
     base = name.rstrip("'")
     rates = [f"{q}'" for q in model.coordinates]
-    if name not in (*model.coordinates, *rates, *model.speeds):
-        what = f"{option}: there is no coordinate or speed '{name}'"
-        near = _near(name, (*model.coordinates, *rates, *model.speeds))
+    if name not in (known := (*model.coordinates, *rates, *model.speeds, *model.states)):
+        what = f"{option}: there is no coordinate{', speed or state' if model.states else ' or speed'} '{name}'"
+        near = _near(name, known)
         other = "--set" if option.startswith("--") else "parameters="
         raise UsageError(what, fix=f"a parameter is given by {other}" if name in model.parameters else near)
     part = model.coordinates.get(base)
@@ -315,7 +318,8 @@ class TypedNumbers:
     def unit(self) -> Unit | None:
         """The unit that the file declares; of a rate per second."""
         base = self.name.rstrip("'")
-        part = self.model.parameters.get(base) or self.model.coordinates.get(base)
+        model = self.model
+        part = model.parameters.get(base) or model.coordinates.get(base) or model.states.get(base)
         unit = None if part is None else part.unit
         for _ in range(len(self.name) - len(base)):
             unit = None if unit is None else unit.rate
@@ -381,7 +385,7 @@ def refuse_what_is_not_set(model: Model, name: str, *, starts: bool) -> None:
     Raises:
         UsageError: it is named.
     """
-    moving = [*model.coordinates, *(f"{q}'" for q in model.coordinates), *model.speeds] if starts else []
+    moving = [*model.coordinates, *(f"{q}'" for q in model.coordinates), *model.speeds, *model.states] if starts else []
     known = [*model.parameters, *moving]
     if name not in known:
         what = f"no parameter '{name}'" if not starts else f"no parameter, coordinate, rate or speed '{name}'"

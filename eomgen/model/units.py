@@ -10,7 +10,7 @@ from eomgen.model.dimensions import Names, inferred
 from eomgen.model.fields import Table
 from eomgen.model.inference import Dimension, dimension_of_unit
 from eomgen.model.outputs import FUNCTIONS
-from eomgen.model.parts import Coordinate, Output
+from eomgen.model.parts import Coordinate, Output, StateVariable
 from eomgen.model.quantities import Unit
 from eomgen.symbolic.expression import Fraction, parse
 
@@ -22,12 +22,14 @@ class UnitsOfNames:
     """Units of all that a model names: a base of `Model`."""
 
     coordinates: Table[Coordinate]
+    states: Table[StateVariable]
     outputs: Table[Output]
 
     def in_own_unit(self, name: str, value: float, digits: int = 9) -> str:
-        """The value with its unit, where the coordinate has one that is not of SI; a number alone elsewhere."""
+        """The value with its unit, where the coordinate or state has one that is not of SI; a number alone elsewhere."""
         rate = name.endswith("'")
-        part = self.coordinates.get(name[:-1] if rate else name)
+        base = name[:-1] if rate else name
+        part = self.coordinates.get(base) or self.states.get(base)
         unit = None if part is None else part.unit
         if unit is None or (unit.factor == 1 and unit.pi_power == 0):
             return f"{value:.{digits}g}"

@@ -11,7 +11,7 @@ from eomgen.frozen import dataclass
 from eomgen.model.arithmetic import AnyNumber, in_order
 from eomgen.model.diagnostics import nearest
 from eomgen.model.fields import Table
-from eomgen.model.parts import Body, Coordinate, Parameter, Speed
+from eomgen.model.parts import Body, Coordinate, Parameter, Speed, StateVariable
 from eomgen.symbolic.expression import Expression, Graph, as_expression
 
 
@@ -21,6 +21,7 @@ class Numbers:
     parameters: Table[Parameter]
     coordinates: Table[Coordinate]
     speeds: Table[Speed]
+    states: Table[StateVariable]
     bodies: Table[Body]
 
     def exact_parameters(self, overrides: Mapping[str, Any] | None = None) -> dict[str, AnyNumber]:
@@ -74,7 +75,7 @@ class Numbers:
         return {name: float(values[name]) for name in self.parameters if name in values}
 
     def start_values(self, parameters: Mapping[str, Any] | None = None) -> tuple[dict[str, float], dict[str, float]]:
-        """Coordinates, rates and declared speeds at the start; what is not given is 0.
+        """Coordinates, rates, declared speeds and states at the start; what is not given is 0.
 
         A dependent coordinate without `start` begins at `near`. A driven one begins where its law says: f(0) for
         `motion`, f(0) as rate for `rate`.
@@ -82,7 +83,8 @@ class Numbers:
         Args:
             parameters: values in place of the model's own (None: those).
         Returns:
-            {"theta": value} of the coordinates; {"theta'": rate, "w1": value} of their rates and the declared speeds.
+            {"theta": value} of the coordinates; {"theta'": rate, "w1": value, "i": value} of their rates, the declared
+            speeds and the states of first order.
         Raises:
             MissingValues: a start needs parameters without values.
         """
@@ -97,6 +99,7 @@ class Numbers:
             u[name + "'"] = _float(rate, lookup, where) if part.motion is None else _slope(part.motion, lookup, where)
         for name, speed in self.speeds.items():
             u[name] = _float(speed.start, lookup, f"speeds.{name}")
+        u |= {name: _float(state.start, lookup, f"states.{name}") for name, state in self.states.items()}
         for each in self.quaternions:
             q |= dict(zip(each.coordinates, _normed([q[name] for name in each.coordinates], each.body), strict=True))
         return q, u

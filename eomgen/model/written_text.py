@@ -17,6 +17,7 @@ from eomgen.model.fields import (
     PARAMETERS,
     RATES,
     SPEEDS,
+    STATE,
     TIME,
     AxialRule,
     EitherRule,
@@ -38,7 +39,7 @@ from eomgen.model.quantities import UNITS, Unit
 from eomgen.model.reader import loads
 from eomgen.symbolic.expression import NAMES
 
-SYMBOLS = ("parameters", "coordinates", "speeds", "inputs", "unknowns")
+SYMBOLS = ("parameters", "coordinates", "speeds", "states", "inputs", "unknowns")
 OBJECTS = ("bodies", "points", "constraints", "trusses", "forces")
 NAMED = (*SYMBOLS, *OBJECTS, "outputs")
 _CONSTANT = ("parameters", "unknowns")
@@ -49,6 +50,7 @@ SCOPES = {
     RATES: (*_CONSTANT, "coordinates"),
     SPEEDS: (*_CONSTANT, "coordinates", "speeds"),
     MOTION: SYMBOLS,
+    STATE: SYMBOLS,
 }
 """Tables whose names may stand in an expression of a scope."""
 _TOKEN = re.compile(r"[^\W\d]\w*(?:\.[^\W\d]\w*)*|[()]")
@@ -325,10 +327,11 @@ class WrittenText:
     def _symbols(self, scope: str) -> Iterator[tuple[str, DocumentPath]]:
         """The symbols that an expression of a scope may hold, with their rates."""
         tables = SCOPES.get(scope, SYMBOLS)
-        primes = {RATES: 1, SPEEDS: 1, MOTION: 1}.get(scope, 0 if scope in SCOPES else 2)
+        primes = {RATES: 1, SPEEDS: 1, MOTION: 1, STATE: 2}.get(scope, 0 if scope in SCOPES else 2)
+        dots = {"coordinates": primes, "states": int(tables is SYMBOLS)}
         for declared in self.declarations:
             if declared[0] in tables and len(declared) == 2:
-                for k in range(primes + 1 if declared[0] == "coordinates" else 1):
+                for k in range(dots.get(str(declared[0]), 0) + 1):
                     yield str(declared[1]) + "'" * k, declared
 
     def _of_kind(self, of: str, path: DocumentPath) -> list[tuple[str, DocumentPath]]:

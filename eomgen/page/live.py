@@ -140,7 +140,7 @@ class Live:
         return tuple(name for name in in_order(given)[0] if (x := given[name]) is not None and x.names - {"pi"})
 
     def _begin(self) -> Program:
-        """The derived parameters; start, then first guess of each coordinate; start of each speed."""
+        """The derived parameters; start, then first guess of each coordinate; start of each speed and state."""
         system = self.phase.declared
         scope, symbols = system.scope, system.symbols
         known: dict[Node, Scalar] = {symbols.t: 0}
@@ -153,7 +153,8 @@ class Live:
         q = [_begun(scope, part) for part in parts.values()]
         guesses = [scope.value(part.near) for part in parts.values()]
         speeds = start_speeds(system)
-        begun = (*(symbols.parameters[name] for name in derived), *q, *guesses, *(speeds[u] for u in symbols.u))
+        states = (scope.value(part.start) for part in self.model.states.values())
+        begun = (*(symbols.parameters[name] for name in derived), *q, *guesses, *speeds.values(), *states)
         return program_of(substituted(begun, known), symbols, inputs=system.inputs)
 
     @property
@@ -167,14 +168,14 @@ class Live:
         phase, first = self.phase, len(self.scene.values)
         found = {"T": ("frame", first), "V": ("frame", first + 1)}
         found |= {f"{q}'": ("frame", first + 2 + k) for k, q in enumerate(phase.coordinates)}
-        found |= {name: ("x", k) for k, name in enumerate((*phase.coordinates, *phase.speeds))}
+        found |= {name: ("x", k) for k, name in enumerate(phase.moving)}
         place = first + 2 + len(phase.coordinates)
         return found | {name: ("frame", place + k) for k, name in enumerate(self.reactions)}
 
     def reported(self) -> dict[str, Any]:
-        """Description of the programs for the page."""
+        """Description of the programs for the page, to which a state of first order is one more speed."""
         declared, model = self.phase.declared, self.model
-        q, u, parts = declared.symbols.q, declared.symbols.u, model.coordinates
+        q, u, parts = declared.symbols.q, declared.symbols.u + declared.symbols.z, model.coordinates
         standing = set(symbols_of(declared.constraints.gaps))
         sought = declared.constraints.fixed_by_position
         return {
@@ -182,7 +183,7 @@ class Live:
             "derived": list(self.derived),
             "coordinates": [x.name for x in q],
             "speeds": [x.name for x in u],
-            "phase": {"coordinates": self.phase.coordinates, "speeds": self.phase.speeds},
+            "phase": {"coordinates": self.phase.coordinates, "speeds": self.phase.speeds + self.phase.states},
             "start": self.start.reported(),
             "ties": self.constraints.reported(),
             "sought": [k for k, x in enumerate(q) if x in sought],

@@ -476,7 +476,7 @@ def reference_state(modes: Modes) -> DrawnState:
     """The state about which small motions are looked at."""
     system, numbers = modes.small.reference.system, modes.small.reference.numbers
     symbols = system.symbols
-    x = [float(numbers.get(node, 0.0)) for node in (*symbols.q, *symbols.u)]
+    x = [float(numbers.get(node, 0.0)) for node in symbols.x]
     p = [float(numbers[node]) for node in symbols.parameters.values()]
     return DrawnState(float(numbers.get(symbols.t, 0.0)), np.array(x), np.array(p))
 

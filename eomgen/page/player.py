@@ -148,7 +148,7 @@ class PlayedRun:
 
     def reported(self) -> dict[str, Any]:
         """Data of the player in the page, as JSON."""
-        run, names = self.run, (*self.run.coordinates, *self.run.speeds)
+        run, names = self.run, self.run.moving
         moves = self.moves
         columns = self.live.columns if self.live else {name: ("x", k) for k, name in enumerate(names)}
         plotted = [name for name in columns if not name.endswith("'") or name in names]
@@ -185,7 +185,7 @@ class PlayedRun:
 
     def _signs(self, plotted: Sequence[str]) -> dict[str, str]:
         """The names as formulas have them, MathML."""
-        names = dict.fromkeys((*self.run.coordinates, *self.run.speeds, *self.model.parameters))
+        names = dict.fromkeys((*self.run.moving, *self.model.parameters))
         notation = notation_of(self.model).reported_apart(names)
         return {name: mathml(notation.latex(name)) for name in names if name in plotted or self.options.moves}
 
@@ -233,7 +233,7 @@ class PlayedRun:
             for name, value in zip(self.phase.declared.symbols.parameters, self.phase.p, strict=True)
             if name not in derived
         }
-        first = dict(zip((*self.run.coordinates, *self.run.speeds), self.run.x[0].tolist(), strict=True))
+        first = dict(zip(self.run.moving, self.run.x[0].tolist(), strict=True))
         unit_quaternions = {e.name for four in self.phase.declared.scope.quaternions for e in four}
         for name, part in self.model.coordinates.items():
             if name in first and not part.driven and not part.dependent and name not in unit_quaternions:
@@ -241,6 +241,7 @@ class PlayedRun:
         values |= {
             name: (first[name], "speed", "") for name in self.run.speeds if name.rstrip("'") not in unit_quaternions
         }
+        values |= {name: (first[name], "speed", part.about or "") for name, part in self.model.states.items()}
         requested = self.options.sliders
         unknown = [name for name in requested if name not in values]
         if unknown:
@@ -522,8 +523,8 @@ def _named_otherwise(played: PlayedRun, columns: Mapping[str, Any]) -> str:
     run, live = played.run, played.live
     if live is None or not len(run.t) or played.phase.system.inputs:
         raise NoValue("it does not move by itself")
-    k, names = len(run.t) // 2, (*live.phase.coordinates, *live.phase.speeds)
-    own = {name: run.x[:, j] for j, name in enumerate((*run.coordinates, *run.speeds))} | dict(run.reactions)
+    k, names = len(run.t) // 2, live.phase.moving
+    own = {name: run.x[:, j] for j, name in enumerate(run.moving)} | dict(run.reactions)
     x = [float(own[name][k]) for name in names]
     frame = compiled(live.programs["frame"], "numpy")(float(run.t[k]), x, played.phase.p, ())
     numbers: dict[str, Sequence[float]] = {"x": x, "frame": frame.tolist()}
@@ -551,12 +552,12 @@ def _slots(played: PlayedRun, state: NumericState) -> list[float]:
 def _compared(played: PlayedRun, reported: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
     run = played.run
     yield "time", partial(differing, reported["time"], run.phases[-1].end)
-    names = [*run.coordinates, *run.speeds]
+    names = [*run.moving]
     yield "what moves it", partial(_otherwise_moved, played, reported)
     yield "names", lambda: "" if list(reported["names"]) == names else ", ".join(reported["names"])
     yield "instants", partial(_other_column, reported["run"]["t"], [run.t])
     yield "states", partial(_other_column, reported["run"]["x"], list(_states(played).T))
-    if reported.get("live") and {*played.phase.coordinates, *played.phase.speeds} <= {*names}:
+    if reported.get("live") and {*played.phase.moving} <= {*names}:
         yield "numbers by their names", partial(_named_otherwise, played, reported["live"]["columns"])
     model, p = played.model, dict(zip(played.phase.declared.symbols.parameters, played.phase.p, strict=True))
     for each in reported["parameters"]:
@@ -564,7 +565,7 @@ def _compared(played: PlayedRun, reported: Mapping[str, Any]) -> Iterator[tuple[
     first = dict(zip(names, run.x[0].tolist(), strict=True))
     for each in reported["sliders"]:
         yield f"slider {each['name']}", partial(_other_slider, each, p | first)
-    parts = {**model.parameters, **model.coordinates}
+    parts = {**model.parameters, **model.coordinates, **model.states}
     plotted = [each for each in reported["plotted"] if each["name"] in model.coordinates]
     for each in (*reported["sliders"], *plotted):
         unit = getattr(parts.get(each["name"]), "unit", None)

@@ -163,7 +163,8 @@ def slider_ranges(
     for text in sliders:
         name, equals, ends = (part.strip() for part in text.partition("="))
         first, colon, last = (part.strip() for part in ends.partition(":"))
-        known = (*model.parameters, *model.coordinates, *(f"{q}'" for q in model.coordinates), *model.speeds)
+        rates = (f"{q}'" for q in model.coordinates)
+        known = (*model.parameters, *model.coordinates, *rates, *model.speeds, *model.states)
         if name not in known:
             raise UsageError(f"there is no slider for '{name}'", fix=f"there are {', '.join(known)}")
         if name in found:

@@ -334,11 +334,11 @@ class _Proof:
             return wrong
         run = motion.run(t)
         symbols = motion.phase.system.symbols
-        there = np.array([moment.numbers[node] for node in (*symbols.q, *symbols.u)])
+        there = np.array([moment.numbers[node] for node in symbols.x])
         apart = np.abs(run.x[-1] - there) / (1 + np.max(np.abs(run.x), axis=0, initial=0.0))
         k = int(np.argmax(apart)) if len(apart) else 0
         if len(apart) and not apart[k] <= tolerances.RUNS_AGREE:
-            name = (*symbols.q, *symbols.u)[k].name
+            name = symbols.x[k].name
             return f"{name} = {there[k]:.10g} for {run.x[-1][k]:.10g} at t = {t:.10g} s"
         return self._too_late(motion, output, run, t)
 
@@ -389,7 +389,7 @@ class _Proof:
         scalar, symbols = read_back(phase.system, found.exact or ""), phase.system.symbols
         if depends_on(scalar, symbols.u):
             return ""  # a function of the state: its number is compared
-        nodes, parameters = (*symbols.q, *symbols.u), phase.system.scope.known_exactly
+        nodes, parameters = symbols.x, phase.system.scope.known_exactly
         one_way = _before_a_turn(run, len(symbols.q))
         rows = list(zip(run.t.tolist(), run.x.tolist(), strict=True))[1:one_way]
         for t, x in (*rows[:: max(4, one_way // TRIED)], *rows[-LAST:]):
@@ -423,7 +423,7 @@ def _by_coincidence(moment: StateAtInstant, condition: WrittenEquation | AtRest 
     """
     system = moment.phase.system
     symbols, model, rng = system.symbols, system.scope.model, Random(4)
-    nodes = (*symbols.q, *symbols.u)
+    nodes = symbols.x
     if not symbols.parameters or any(node not in moment.exact for node in nodes):
         return ""
     own = {name: float(x) for name, x in model.exact_parameters().items()}
@@ -499,7 +499,7 @@ def _elsewhere(runs: Sequence[PhaseRun], output: Output, moment: StateAtInstant)
     last = runs[-1]
     end = last.after.values if output.side == "after" and last.after is not None else last.end
     symbols, numbers = moment.phase.system.symbols, moment.numbers
-    wrong = [node for node in (*symbols.q, *symbols.u) if _apart(numbers[node], end.get(node.name, 0.0))]
+    wrong = [node for node in symbols.x if _apart(numbers[node], end.get(node.name, 0.0))]
     wrong += [symbols.t] if _apart(numbers[symbols.t], last.run.end) else []
     return "".join(f"{node.name} is {numbers[node]:.10g} there" for node in wrong[:1])
 

@@ -172,7 +172,7 @@ class NumericState:
     def x(self) -> np.ndarray:
         """(q, u)"""
         symbols = self.equations.symbols
-        return np.array([self.numbers[node] for node in (*symbols.q, *symbols.u)], dtype=float)
+        return np.array([self.numbers[node] for node in symbols.x], dtype=float)
 
     @property
     def p(self) -> np.ndarray:
@@ -252,7 +252,7 @@ def state_in_numbers(equations: EquationsOfMotion, place: TrialState) -> Numeric
     """A state at which equations are tried, in doubles."""
     symbols, values = equations.symbols, place.state
     parameters = {node: Fraction(float(values[node])) for node in symbols.parameters.values()}
-    return NumericState(equations, parameters, {x: float(values[x]) for x in (symbols.t, *symbols.q, *symbols.u)})
+    return NumericState(equations, parameters, {x: float(values[x]) for x in (symbols.t, *symbols.x)})
 
 
 def read_back(system: System, text: str) -> Scalar:

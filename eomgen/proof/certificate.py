@@ -55,6 +55,8 @@ def certify(
     checks = [*identity_checks(equations, derived, trials.states), trials.places(), trials.twists()]
     if trials.given:
         checks.append(trials.given_motions())
+    if equations.symbols.z:
+        checks.append(trials.state_rates())
     if equations.system.elimination is not None:
         checks.append(trials.eliminated_rows())
     checks += [trials.free_bodies(), *trials.accelerations()]
@@ -101,7 +103,7 @@ def certify_reactions(
     found = certify(equations) + reaction_texts(equations, texts)
     try:
         symbols, begun = equations.symbols, Start.of(equations.system).values
-        numbers = {symbols.t: 0.0, **{x: begun[x.name] for x in (*symbols.q, *symbols.u)}}
+        numbers = {symbols.t: 0.0, **{x: begun[x.name] for x in symbols.x}}
         start = NumericState(equations, equations.system.scope.known_exactly, numbers)
     except (MissingValues, DerivationError):
         return found

@@ -169,7 +169,7 @@ def _misplaced(phase: Phase, apart: System) -> str:
 def _state(system: System, values: Mapping[str, float], p: np.ndarray, t: float) -> State:
     """State of the run with 50 digits; quaternions of doubles are normalized, as their norm is off by 1e-16."""
     symbols = system.symbols
-    known = {node: fifty_digits().number(values.get(node.name, 0.0)) for node in (*symbols.q, *symbols.u)}
+    known = {node: fifty_digits().number(values.get(node.name, 0.0)) for node in symbols.x}
     known |= system.scope.on_unit_norms(known)
     given = zip(symbols.parameters.values(), p, strict=True)
     return {**known, symbols.t: fifty_digits().number(t)} | {node: fifty_digits().number(float(x)) for node, x in given}
@@ -258,7 +258,7 @@ class _Bodies:
 
     def _state(self, values: Mapping[str, float]) -> np.ndarray:
         symbols = self.system.symbols
-        return np.array([values.get(node.name, 0.0) for node in (*symbols.q, *symbols.u)])
+        return np.array([values.get(node.name, 0.0) for node in symbols.x])
 
     @cached_property
     def _rows(self) -> dict[str, tuple[Row, ...]]:

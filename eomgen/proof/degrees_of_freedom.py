@@ -280,7 +280,7 @@ def pulled_at_start(system: System) -> str:
     symbols = system.symbols
     known = system.scope.model.exact_parameters()
     state = {node: float(known[name]) for name, node in symbols.parameters.items() if name in known}
-    state |= {node: start.get(node.name, 0.0) for node in (*symbols.q, *symbols.u)} | {symbols.t: 0.0}
+    state |= {node: start.get(node.name, 0.0) for node in symbols.x} | {symbols.t: 0.0}
     for applied in springs_of_the_start(system):
         if applied.potential is not None and evaluate((applied.potential,), state, FLOAT)[0] > tolerances.SOLVED:
             return f"forces.{applied.name} is not slack where the motion starts"

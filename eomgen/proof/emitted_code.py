@@ -14,6 +14,7 @@ import zipfile
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import field, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -25,7 +26,7 @@ from eomgen.mechanics.constraints import Closure
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, exact_accelerations
 from eomgen.proof.check import Check, attempted, checked, unchecked
 from eomgen.proof.free_bodies import moved_otherwise
-from eomgen.proof.in_numbers import instant_of, with_inputs
+from eomgen.proof.in_numbers import declared_state_rates, instant_of, with_inputs
 from eomgen.symbolic.expression import Node, Scalar, ScalarRow, State, order
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, floats_of, of_one_length, tolerances
 
@@ -43,7 +44,7 @@ class TriedState:
     """A state at which code is tried.
 
     Args:
-        t, x, p: time, (q, u), parameters.
+        t, x, p: time, (q, u, z), parameters.
         inputs: those that are given in place of the model's own, by name.
         a: accelerations, where these are given.
     """
@@ -64,7 +65,7 @@ class PhaseMotion:
     def values(self, at: TriedState) -> State:
         """Values of every symbol except a and lam at a state, with 50 digits; inputs of the model, or given ones."""
         symbols = self.equations.symbols
-        nodes = (*symbols.q, *symbols.u, *symbols.parameters.values())
+        nodes = (*symbols.x, *symbols.parameters.values())
         found = {node: fifty_digits().number(float(value)) for node, value in zip(nodes, (*at.x, *at.p), strict=True)}
         found[symbols.t] = instant_of(self.equations.system, float(at.t))
         given = {symbols.inputs[name]: fifty_digits().number(float(x)) for name, x in at.inputs.items()}
@@ -90,11 +91,11 @@ class PhaseMotion:
         given = self.values(at)
         found = _held(system, given)
         if found is None or any(
-            abs(found[x] - given[x]) > tolerances.CARRIED * (1 + abs(given[x])) for x in (*symbols.q, *symbols.u)
+            abs(found[x] - given[x]) > tolerances.CARRIED * (1 + abs(given[x])) for x in symbols.x
         ):
             return None
-        state = replace(at, x=np.array(floats_of(found[x] for x in (*symbols.q, *symbols.u))))
-        a = code(state)[len(symbols.q) :]
+        state = replace(at, x=np.array(floats_of(found[x] for x in symbols.x)))
+        a = code(state)[len(symbols.q) : len(symbols.q) + len(symbols.u)]
         if not np.all(np.isfinite(a)):
             return None
         moving = found | dict(zip(symbols.a, map(fifty_digits().number, a.tolist()), strict=True))
@@ -111,7 +112,14 @@ class PhaseMotion:
         found = np.array(floats_of(evaluate(self.scalars, self.values(at), fifty_digits())))
         n, k = len(self.equations.M), len(self.equations.J)
         rates, M, J, forcing, gamma = np.split(found, np.cumsum([len(self.equations.N), n * n, k * n, n]))
-        return RunNumbers(rates, M.reshape(n, n), J.reshape(k, n), forcing, gamma)
+        declared = partial(self.declared_rates, at)
+        return RunNumbers(rates, M.reshape(n, n), J.reshape(k, n), forcing, gamma, declared)
+
+    def declared_rates(self, at: TriedState, a: np.ndarray) -> np.ndarray:
+        """z' of the states of first order at a state with given accelerations, by the file's own texts."""
+        symbols, number = self.equations.symbols, fifty_digits().number
+        known = self.values(at) | dict(zip(symbols.a, map(number, a.tolist()), strict=True))
+        return np.array([float(x) for x in declared_state_rates(self.equations.system, known).values()])
 
 
 @dataclass(frozen=True)
@@ -123,6 +131,7 @@ class RunNumbers:
     J: np.ndarray
     forcing: np.ndarray
     gamma: np.ndarray
+    declared: Callable[[np.ndarray], np.ndarray] = lambda _: np.zeros(0)
 
     def left(self, dx: np.ndarray) -> tuple[float, str]:
         """Residual of the equations with dx, relative to the largest of their terms, and the equation; nan without dx.
@@ -135,13 +144,17 @@ class RunNumbers:
             for x in (self.rates, self.M, self.J, self.forcing, self.gamma)
         ):
             raise NoValue("a coefficient of the equations is beyond doubles")
-        rates, a = np.split(np.asarray(dx, dtype=float), [len(self.rates)])
+        rates, a, further = np.split(np.asarray(dx, dtype=float), np.cumsum([len(self.rates), len(self.M)]))
         sizes = 1 + np.max(np.abs(self.rates), initial=0.0)
         parts = {"q' = N u + nu": np.max(np.abs(rates - self.rates), initial=0.0) / sizes}
         parts["M a = forcing + J^T lam"] = self.left_of_forces(a)
         rows = np.abs(self.J @ a + self.gamma)
         terms = 1 + np.abs(self.J) @ np.abs(a) + np.abs(self.gamma)
         parts["J a + gamma = 0"] = float(np.max(rows / terms, initial=0.0))
+        if len(further):
+            right = self.declared(a)
+            apart = np.abs(further - right) / (1 + np.abs(right))
+            parts["z' = its rate"] = float(np.max(np.where(np.isfinite(further), apart, np.nan), initial=0.0))
         self.refuse_contradiction()
         worst = max(parts, key=lambda name: np.inf if np.isnan(parts[name]) else parts[name])
         return float(parts[worst]), worst

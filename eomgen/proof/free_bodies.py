@@ -126,7 +126,7 @@ def drive_demanded(system: System, coordinate: str, known: State) -> tuple[Any, 
     free = DrivingForces(system).let_go(coordinate)
     own = {**system.scope.names, **{lam.name: lam for lam in system.symbols.lam}}
     symbols = free.symbols
-    moving = (*symbols.q, *symbols.u, *symbols.a, *symbols.lam, *symbols.inputs.values(), symbols.t)
+    moving = (*symbols.x, *symbols.a, *symbols.lam, *symbols.inputs.values(), symbols.t)
     nodes = (*symbols.parameters.values(), *moving)
     if not {x.name for x in nodes} <= {*own}:
         raise NoValue("constraints that follow from others do not without the drive")

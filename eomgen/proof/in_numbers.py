@@ -9,10 +9,11 @@ from collections.abc import Iterable, Sequence
 from functools import cached_property
 from typing import Any
 
+from eomgen.errors import ExpressionError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import Motion
-from eomgen.model import Couple, PointForce
+from eomgen.model import Couple, PointForce, in_order
 from eomgen.symbolic.expression import Matrix, Scalar, State, Vector
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 
@@ -39,6 +40,25 @@ def with_inputs(system: System, known: State) -> State:
     """A state with those of the model's inputs that it does not give."""
     own = {node: system.inputs[name] for name, node in system.symbols.inputs.items() if node not in known}
     return {**known, **dict(zip(own, evaluate(tuple(own.values()), known, fifty_digits()), strict=True))}
+
+
+def declared_state_rates(system: System, known: State) -> dict[str, Any]:
+    """{state: z'} of the states of first order at a state with its accelerations, by the file's own texts.
+
+    Each name in a text is put in as a number, the rate of another state by its own text: no graph stands between.
+    """
+    names = system.scope.names
+    laws = {f"{name}'": part.rate for name, part in system.scope.model.states.items()}
+    standing = {"pi"}.union(*(law.names for law in laws.values()))
+    needed = tuple(standing & names.keys() - laws.keys())
+    numbers = evaluate(tuple(names[name] for name in needed), known, fifty_digits())
+    found = dict(zip(needed, numbers, strict=True))
+    for name in in_order(laws)[0]:
+        try:
+            found[name] = laws[name].evaluate(found)
+        except ExpressionError as error:
+            raise NoValue(f"{name} has no value there: {error.what}") from error
+    return {name[:-1]: found[name] for name in laws}
 
 
 @dataclass(frozen=True)

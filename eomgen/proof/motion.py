@@ -280,7 +280,7 @@ def _constraints(legs: Sequence[Leg], promise: Promise) -> Check | None:
 def _leverage(leg: Leg, scalars: tuple[Scalar, ...], k: int) -> float:
     """Factor by which an error of the k-th state opens a scalar, at least 1; large for a rod of 1e9 m that turns."""
     symbols = leg.equations.symbols
-    slopes = tuple(x for scalar in scalars for x in gradient(scalar, (*symbols.q, *symbols.u)))
+    slopes = tuple(x for scalar in scalars for x in gradient(scalar, symbols.x))
     one = replace(leg, t=leg.t[k : k + 1], x=leg.x[k : k + 1])
     return max(1.0, float(np.max(np.abs(_function(one, slopes)), initial=0.0)))
 

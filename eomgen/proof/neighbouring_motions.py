@@ -101,7 +101,7 @@ class Differences:
             for axis, name in enumerate(part.speeds):
                 known[f"{NAME}{name}{prime}"] = SmallTurn(four, own, axis, standing=False)
                 known[f"{NAME}{'xyz'[axis]}_{part.body}{prime}"] = SmallTurn(four, own, axis, standing=True)
-        own_names = {*system.symbols.q, *system.symbols.u}
+        own_names = {*system.symbols.x}
         return {label: known[label.name] for label in labels if label not in own_names}
 
     @cached_property

@@ -85,7 +85,7 @@ class _RunReported:
     def own(self) -> dict[str, np.ndarray]:
         """Columns of the run by their names."""
         found = {"t": self.run.t}
-        for k, name in enumerate((*self.run.coordinates, *self.run.speeds)):
+        for k, name in enumerate(self.run.moving):
             found[name] = self.run.x[:, k]
         if self.run.energy is not None:
             found["energy"] = self.run.energy
@@ -114,7 +114,7 @@ class _RunReported:
 
     def _by_letters(self, tex: str) -> str:
         """The name for which the model declares a symbol, else that of the same letters."""
-        tables = (self.model.coordinates, self.model.speeds, self.model.outputs)
+        tables = (self.model.coordinates, self.model.speeds, self.model.states, self.model.outputs)
         declared = {x.symbol.tex: name for table in tables for name, x in table.items() if x.symbol is not None}
         alike = {_plain(name): name for name in self.own if not name.endswith("'")}
         return declared.get(tex) or alike.get(_plain(tex), tex)
@@ -127,7 +127,8 @@ class _RunReported:
             return None
         if name in self.run.units:
             return self.run.units[name]
-        part = self.model.coordinates.get(name.removesuffix("'")) if name in self.run.coordinates else None
+        tables = ((self.run.coordinates, self.model.coordinates), (self.run.states, self.model.states))
+        part = next((table.get(name) for names, table in tables if name in names), None)
         return None if part is None or part.unit is None else part.unit.text
 
     def _ends(self, head: str, texts: Sequence[str]) -> str:
@@ -345,7 +346,7 @@ def state_of_row(run: Trajectory, phase: Phase, row: int) -> NumericState:
     parameters = {
         node: Fraction(float(value)) for node, value in zip(symbols.parameters.values(), phase.model.p, strict=True)
     }
-    numbers = {node: float(value) for node, value in zip((*symbols.q, *symbols.u), here, strict=False)}
+    numbers = {node: float(value) for node, value in zip(symbols.x, here, strict=False)}
     return NumericState(equations, parameters, {symbols.t: float(run.t[row]), **numbers})
 
 

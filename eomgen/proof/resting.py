@@ -104,7 +104,7 @@ def _pushed(place: Equilibrium) -> str:
     free = standing.free or standing
     symbols, digits = free.symbols, fifty_digits()
     known: dict[Node, Any] = free.scope.values_of_parameters(Random(3))
-    still = (symbols.t, *symbols.q, *symbols.u, *symbols.a, *symbols.lam)
+    still = (symbols.t, *symbols.x, *symbols.a, *symbols.lam)
     known = {**dict.fromkeys(still, digits.number(0)), **known}
     held = {q: value for q, value in statics.given.items() if q in symbols.q}
     known |= dict(zip(held, evaluate(tuple(held.values()), known, digits), strict=True))

@@ -93,7 +93,7 @@ class States:
     def _is_near(self, state: State) -> bool:
         """True if the numbers are small enough to leave digits for differences, and not to overflow when squared."""
         symbols = self.system.symbols
-        moving, given = (*symbols.q, *symbols.u), symbols.parameters.values()
+        moving, given = symbols.x, symbols.parameters.values()
         near = all(abs(state[x]) <= tolerances.LARGEST_AT_50 for x in moving if x in state)
         return near and all(abs(state[x]) <= tolerances.LARGEST_SQUARED for x in given if x in state)
 
@@ -101,7 +101,7 @@ class States:
     def switches(self) -> tuple[Switch, ...]:
         """Quantities that decide between pieces of functions and change along the motion."""
         symbols = self.system.symbols
-        moving = frozenset((symbols.t, *symbols.q, *symbols.u, *symbols.inputs.values()))
+        moving = frozenset((symbols.t, *symbols.x, *symbols.inputs.values()))
         return switches_of(self.scalars, moving)
 
     def inside(self, state: State) -> bool:
@@ -143,7 +143,7 @@ class States:
         """States in one piece; the other pieces in which they lie count as visited."""
         k, j = piece
         switch, symbols = self.switches[k], self.system.symbols
-        moving = frozenset((symbols.t, *symbols.q, *symbols.u, *symbols.inputs.values()))
+        moving = frozenset((symbols.t, *symbols.x, *symbols.inputs.values()))
         for target in switch.targets(start)[j]:
             try:
                 found = switch.moved(_set_moving(self.system, start, rng), target, moving)
@@ -196,7 +196,7 @@ def _own_state(system: System, rng: Random) -> State | None:
         return None
     known = {**model.exact_parameters(drawn), **values}
     given = {node: known[name] for name, node in symbols.parameters.items()}
-    given |= {node: known[node.name] for node in (*symbols.q, *symbols.u)}
+    given |= {node: known[node.name] for node in symbols.x}
     state = {node: number(value) for node, value in (*given.items(), (symbols.t, 0))}
     state |= {x: number(rng.uniform(-1, 1)) for x in (*symbols.a, *symbols.lam)}
     state |= system.scope.on_unit_norms(state)
@@ -215,7 +215,7 @@ def _set_moving(system: System, state: State, rng: Random) -> State:
 def _shaken(system: System, state: State, spread: float, rng: Random) -> State:
     """State near another one, its constraints satisfied where they can be."""
     symbols = system.symbols
-    shifted = {x: state[x] + fifty_digits().number(rng.uniform(-spread, spread)) for x in (*symbols.q, *symbols.u)}
+    shifted = {x: state[x] + fifty_digits().number(rng.uniform(-spread, spread)) for x in symbols.x}
     shifted[symbols.t] = state[symbols.t] + fifty_digits().number(rng.uniform(0, spread))
     state = state | shifted
     state |= system.scope.on_unit_norms(state)
@@ -233,7 +233,7 @@ def real_state(system: System, rng: Random) -> State:
         return arithmetic.number(1) * rng.randint(low * 10**12, high * 10**12) / 10**12
 
     state = {p: draw(1, 3) / 2 for p in symbols.parameters.values()}
-    state |= {x: draw(-1, 1) for x in (*symbols.q, *symbols.u, *symbols.a, *symbols.lam, *symbols.inputs.values())}
+    state |= {x: draw(-1, 1) for x in (*symbols.x, *symbols.a, *symbols.lam, *symbols.inputs.values())}
     state[symbols.t] = draw(0, 1)
     return state | system.scope.on_unit_norms(state)
 

@@ -37,7 +37,7 @@ from eomgen.proof.free_bodies import (
     moved_otherwise,
     named_otherwise,
 )
-from eomgen.proof.in_numbers import FINER_STEP, STEP, way_through
+from eomgen.proof.in_numbers import FINER_STEP, STEP, declared_state_rates, way_through
 from eomgen.proof.motion import other_energies
 from eomgen.proof.posed_model import apart, meetings_of, misplaced
 from eomgen.proof.printed import Printed, ReadBack, least_multipliers
@@ -450,10 +450,24 @@ class Trials:
                     continue
         return unchecked(name, NOWHERE, "50 digits")
 
+    def state_rates(self) -> Check:
+        """z' of the states of first order is what the file's own text says at a state of the motion."""
+        scope = self.equations.system.scope
+
+        def check(state: State) -> str:
+            moving = self._moving(state)
+            found = evaluate(scope.state_rates, moving, fifty_digits())
+            right = declared_state_rates(self.equations.system, moving)
+            size = 1 + max(map(abs, right.values()))
+            apart = (name for x, (name, y) in zip(found, right.items(), strict=True) if abs(x - y) > size * tolerances.ZERO_AT_50)
+            return next((f"the rate of '{name}' is another one" for name in apart), "")
+
+        return self._at_states("rates of states are those declared", "50 digits, by their texts", check, moving=True)
+
     def code(self, rhs: RightHandSide) -> Check:
         """The emitted code returns the symbols' numbers, at states that are numbers of double precision."""
         symbols, digits = self.equations.symbols, fifty_digits()
-        groups = ((*symbols.q, *symbols.u), symbols.parameters.values(), symbols.inputs.values())
+        groups = (symbols.x, symbols.parameters.values(), symbols.inputs.values())
 
         def check(state: State) -> str:
             rounded = in_doubles(state)
@@ -461,8 +475,10 @@ class Trials:
             x, p, inputs = ([float(state[s]) for s in group] for group in groups)
             rates = floats_of(evaluate(self.equations.system.scope.rates, state, digits))
             dx = rhs(float(state[symbols.t]), x, p, inputs)
-            a = floats_of(self._moving(state)[a] for a in symbols.a)
-            return _difference("dx", dx, [*rates, *a], tolerances.COMPUTED)
+            moving = self._moving(state)
+            a = floats_of(moving[a] for a in symbols.a)
+            further = floats_of(declared_state_rates(self.equations.system, moving).values())
+            return _difference("dx", dx, [*rates, *a, *further], tolerances.COMPUTED)
 
         name = f"the emitted code ({rhs.target}) returns the symbols' numbers"
         return self._at_states(name, "floating point", check, moving=True)

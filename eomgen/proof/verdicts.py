@@ -198,7 +198,7 @@ class _Again:
         known = system.scope.model.exact_parameters(changed)
         parameters = {node: Fraction(float(known[name])) for name, node in symbols.parameters.items()}
         begun = Start.of(system, changed, {u.name: 0.0 for u in symbols.u} if self.judged.at_rest else {}).values
-        moving = (*symbols.q, *symbols.u)
+        moving = symbols.x
         x0 = np.array([begun[node.name] for node in moving])
         rhs = compiled(right_hand_side(with_accelerations(equations)), "numpy")
         p = np.array([float(x) for x in parameters.values()])

@@ -266,7 +266,7 @@ class _Solver:
         symbols = phase.system.symbols
         try:
             state = phase.state_at_start
-            numbers = {x: state[x.name] for x in (*symbols.q, *symbols.u)} | {symbols.t: 0.0}
+            numbers = {x: state[x.name] for x in symbols.x} | {symbols.t: 0.0}
             return self._defined(answer, output, phase, numbers)
         except (KeyError, MissingValues):
             return answer
@@ -340,7 +340,7 @@ class _Solver:
         if missing:
             raise MissingValues(missing)
         values = {"t": 0.0, **known}
-        moving = {x.name for x in (*system.symbols.q, *system.symbols.u)}
+        moving = {x.name for x in system.symbols.x}
         if names & moving:
             values |= self.phase.values_at_start
         for name in names & self.model.inputs.keys():
@@ -384,7 +384,7 @@ class _Solver:
     def _is_long_and_open(self, moment: StateAtInstant, output: Output) -> bool:
         """True if a formula too long to be shown depends on values that are known at the instant only as numbers."""
         phase, symbols = moment.phase, moment.phase.system.symbols
-        missing = [x for x in (symbols.t, *symbols.q, *symbols.u) if x not in moment.exact]
+        missing = [x for x in (symbols.t, *symbols.x) if x not in moment.exact]
         if isinstance(output.at, AtRest) or not missing or not moment.numbers:
             return False
         closed = phase.eliminated(phase.raw(output.value))

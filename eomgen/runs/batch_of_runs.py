@@ -94,7 +94,7 @@ def many_runs(
     names, status, message, x, steps = found
     x[status != "finished"] = np.nan
     equations, phase = _known(plan.simulator)
-    if not plan.model.has_phases and names == (*phase.coordinates, *phase.speeds):
+    if not plan.model.has_phases and names == phase.moving:
         why = _contradictions(plan, phase, x, steps)
         status = np.where(why != "", "contradicted", status)
         message = np.where(why != "", why, message)
@@ -243,6 +243,7 @@ def _starts(plan: _Plan, phase: PhaseModel, equations: Any) -> np.ndarray:
     model, system = plan.model, phase.declared
     parts = [*model.coordinates.values()]
     written = [each for part in parts for each in (part.start, part.speed, part.rate, part.motion, part.near)]
+    written += [part.start for part in model.states.values()]
     varied = plan.parameters.keys() | _following(model, plan.parameters)
     follow = any(_names(each) & varied for each in written) or bool(model.speeds or system.scope.quaternions)
     if follow:
@@ -251,7 +252,7 @@ def _starts(plan: _Plan, phase: PhaseModel, equations: Any) -> np.ndarray:
             parameters, start = plan.of(i)
             rows.append(phase.state(Start.of(system, parameters, start).values))
         return np.array(rows)
-    names = [*phase.coordinates, *phase.speeds]
+    names = [*phase.moving]
     parameters, start = plan.of(0)
     found = np.tile(phase.state(Start.of(system, parameters, start).values), (plan.runs, 1))
     for name, values in plan.start.items():
@@ -277,7 +278,7 @@ def _contradictions(plan: _Plan, phase: PhaseModel, x: np.ndarray, steps: np.nda
     how, (runs, instants) = plan.simulator.how, x.shape[:2]
     t, p = np.tile(plan.instants, runs), np.repeat(_parameters(plan), instants, axis=0)
     promises = [Promise(how.rtol, how.atol, int(n), how.stabilization == "projection") for n in steps]
-    size = np.max(np.abs(x), axis=(1, 2), initial=0.0)
+    size = np.max(np.abs(x[:, :, : len(phase.coordinates + phase.speeds)]), axis=(1, 2), initial=0.0)
     found = np.full(runs, "", dtype=object)
 
     def judge(what: str, left: np.ndarray, limits: Iterable[float]) -> None:
@@ -315,7 +316,7 @@ def _one_by_one(plan: _Plan, which: Sequence[int], threads: int) -> Reported:
         except EomgenError as error:
             return (), "refused", str(error), None, 0
         whole = found.status == "finished" and len(found.t) == len(plan.instants)
-        names = found.coordinates + found.speeds
+        names = found.moving
         return names, found.status, found.message, found.x if whole else None, found.steps
 
     if threads == 1 or len(which) < 2:
@@ -325,7 +326,7 @@ def _one_by_one(plan: _Plan, which: Sequence[int], threads: int) -> Reported:
         with ThreadPoolExecutor(threads) as pool:
             reported = list(pool.map(lambda i: context.copy().run(run, i), which))
     phase = _known(plan.simulator)[1]
-    names = next((each[0] for each in reported if each[3] is not None), phase.coordinates + phase.shown)
+    names = next((each[0] for each in reported if each[3] is not None), phase.coordinates + phase.shown + phase.states)
     x = np.full((len(reported), len(plan.instants), len(names)), np.nan)
     for row, each in zip(x, reported, strict=True):
         if each[3] is not None and each[0] == names:

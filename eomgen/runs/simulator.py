@@ -144,7 +144,7 @@ class Simulator:
 
     def _found(self, valued: Valued) -> tuple[Equations, PhaseModels]:
         model, known = valued.model, self.known
-        key = (model.parameters, model.coordinates, model.speeds)
+        key = (model.parameters, model.coordinates, model.speeds, model.states)
         if key not in known:
             known[key] = self._shared(valued) or self._derived(model)
             if len(known) > MOST_KEPT:
@@ -215,11 +215,11 @@ class KnownEquations:
         system, own = self.equations.graph.system, self.equations.model
         model, p = valued.model, models.p[None, :]
         given = () if self.follows_start else {name.rstrip("'") for name in valued.start}
-        tables = ((model.coordinates, own.coordinates), (model.speeds, own.speeds))
+        tables = tuple((getattr(model, key), getattr(own, key)) for key in ("coordinates", "speeds", "states"))
         if any(part != there[name] for here, there in tables for name, part in here.items() if name not in given):
             return False
         derived = self.derived
-        places = derived.declared.many(0.0, np.zeros((1, len(system.symbols.q) + len(system.symbols.u))), p)
+        places = derived.declared.many(0.0, np.zeros((1, len(system.symbols.x))), p)
         for k, q in enumerate(system.symbols.q):
             places[0, k] = valued.start.get(q.name, places[0, k])
         if not derived.holds(p, places)[0]:
@@ -450,7 +450,7 @@ def _control(models: PhaseModels, here: PhaseStart, controllers: Mapping[str, Co
     first, names = models.of(here.configuration), list(models.model.parameters)
     places = {name: names.index(name) for name in controllers}
     known = dict(zip(names, models.p.tolist(), strict=True))
-    return _Control(controllers, places, (*first.coordinates, *first.shown), known)
+    return _Control(controllers, places, (*first.coordinates, *first.shown, *first.states), known)
 
 
 def _phases(
@@ -458,7 +458,7 @@ def _phases(
 ) -> Iterator[tuple[PhaseRun, float, PhaseModels]]:
     """Phases in order: (phase, time up to which it was planned [s], equations at the input values held in it)."""
     first = models.of(here.configuration)
-    p, fed = models.p, control.fed((*first.coordinates, *first.speeds))
+    p, fed = models.p, control.fed(first.moving)
     for start, end, due in _stretches(control.controllers, plan.end):
         p = control.set_(p, start, here.values, due)
         models = models.at(p, fed)

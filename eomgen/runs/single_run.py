@@ -202,8 +202,8 @@ def _rates(found: Trajectory) -> tuple[np.ndarray, np.ndarray]:
     first = found.phases[0]
     if len(found.phases) == 1 and first.model is not None and first.track is not None:
         t, x = first.track
-        return t, x[:, len(first.model.coordinates) :]
-    return found.t, found.x[:, len(found.coordinates) :]
+        return t, x[:, len(first.model.coordinates) :][:, : len(first.model.speeds)]
+    return found.t, found.x[:, len(found.coordinates) :][:, : len(found.speeds)]
 
 
 def _period(t: np.ndarray, rate: np.ndarray) -> float | None:
@@ -304,7 +304,8 @@ def _refuse_fork_at_rest(models: PhaseModels, here: PhaseStart) -> None:
     if fork is None:
         return
     phase = models.of(here.configuration)
-    rates, accelerations = np.split(np.abs(phase.rate(here.t, phase.state(here.values))), [len(phase.coordinates)])
+    ends = np.cumsum([len(phase.coordinates), len(phase.speeds)])
+    rates, accelerations, _ = np.split(np.abs(phase.rate(here.t, phase.state(here.values))), ends)
     if np.max(rates, initial=0.0) <= tolerances.COMPUTED and np.max(accelerations, initial=0.0) > tolerances.COMPUTED:
         what = f"it starts at rest in {fork.words}: forces move it away, and nothing determines on which branch"
         raise DerivationError(
@@ -393,9 +394,9 @@ def _first_instant(equations: Equations, run: Trajectory) -> dict[str, Any]:
     """Accelerations and multipliers at the start; null where one has no single value."""
     if not len(run.t):
         return {"start_accelerations": {}, "start_multipliers": {}}
-    phase, x = run.phases[0].model, dict(zip(run.coordinates + run.speeds, run.x[0].tolist(), strict=True))
+    phase, x = run.phases[0].model, dict(zip(run.moving, run.x[0].tolist(), strict=True))
     declared = phase.declared_equations
-    state = np.array([x[node.name] for node in (*declared.symbols.q, *declared.symbols.u)])
+    state = np.array([x[node.name] for node in declared.symbols.x])
     p = parameter_vector(equations.model)
     found = closing_accelerations(declared, float(run.t[0]), state, p)
     return {"start_accelerations": found.a, "start_multipliers": found.lam}

@@ -98,7 +98,7 @@ def _resultants(
 def _states(system: System, columns: Mapping[str, np.ndarray], times: np.ndarray) -> np.ndarray:
     """States (q, u) at the instants, instants x n."""
     rest = np.zeros(len(times))
-    nodes = (*system.symbols.q, *system.symbols.u)
+    nodes = system.symbols.x
     return np.array([columns.get(node.name, rest) for node in nodes]).reshape(len(nodes), len(times)).T
 
 

@@ -266,7 +266,7 @@ def drawn_start(system: System) -> DrawnState:
     except DerivationError:
         q, u = model.start_values(assumed)
         values = {**q, **u}
-    x = [float(values[node.name]) for node in (*symbols.q, *symbols.u)]
+    x = [float(values[node.name]) for node in symbols.x]
     p = [float(known.get(name, 1)) for name in symbols.parameters]
     return DrawnState(0.0, np.array(x), np.array(p), tuple(assumed))
 

@@ -112,7 +112,7 @@ class VirtualDisplacement:
         own = {**system.inputs, SHARE: 0}
         symbols = replace(system.symbols, inputs={**system.symbols.inputs, SHARE: self._share})
         program = program_of(scene.values, symbols, inputs=own)
-        x, inputs = self._numbers((*system.symbols.q, *system.symbols.u)), self._numbers(tuple(own.values()))
+        x, inputs = self._numbers(system.symbols.x), self._numbers(tuple(own.values()))
         table = np.tile(inputs, (len(shares), 1))
         table[:, -1] = shares
         p = list(parameters_as_drawn(system).values())
@@ -180,7 +180,7 @@ class VirtualDisplacement:
         """Scalars where the structure stands."""
         system = self.equation.plan.system
         known: dict[Node, Any] = {**parameters_as_drawn(system)}
-        nodes = (*system.symbols.q, *system.symbols.u)
+        nodes = system.symbols.x
         at = evaluate([self.structure.at.get(node, 0) for node in nodes], known, FLOAT)
         known |= {system.symbols.t: 0.0, **dict(zip(nodes, at, strict=True))}
         return [float(x) for x in evaluate(scalars, known, FLOAT)]

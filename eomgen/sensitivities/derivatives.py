@@ -321,7 +321,7 @@ class _Asking:
     def refuse_unknown(self, names: Sequence[str]) -> None:
         """Refuses names that are neither parameters nor start values."""
         symbols = self.phase.system.symbols
-        known = (*self.model.parameters, *(x.name for x in (*symbols.q, *symbols.u)))
+        known = (*self.model.parameters, *(x.name for x in symbols.x))
         for name in names:
             if name not in known:
                 raise UsageError(f"no parameter, coordinate or speed '{name}'", fix=f"one of {', '.join(known)}")
@@ -333,7 +333,7 @@ class _Asking:
             if text == RHS and text not in self.model.outputs:
                 yield from (*(f"{q.name}'" for q in symbols.q), *(f"{u.name}'" for u in symbols.u))
             elif text == STATE and text not in self.model.outputs:
-                yield from (x.name for x in (*symbols.q, *symbols.u))
+                yield from (x.name for x in symbols.x)
             elif text == FREQUENCIES:
                 yield from (f"frequency({k})" for k, _ in enumerate(self.small.frequencies, start=1))
             elif text == REST:
@@ -397,7 +397,7 @@ class _Asking:
         symbols = phase.system.symbols
         numbers, seeds = self._start(name)
         value, slope = ChangingState(phase, numbers, seeds).formula(formula)
-        stays = name in self.model.parameters and not any(seeds.get(x, 0) for x in (*symbols.q, *symbols.u))
+        stays = name in self.model.parameters and not any(seeds.get(x, 0) for x in symbols.x)
         if not stays or len(symbols.u) > MOST_WRITTEN:
             return value, slope, None
         closed = substituted((phase.of_state(formula),), _own_inputs(phase))[0]
@@ -420,7 +420,7 @@ class _Asking:
         symbols, p = system.symbols, self.model.numeric_parameters()
         given = {symbols.t: 0.0} | {symbols.parameters[name]: x for name, x in p.items()}
         state = Start.of(system).values
-        given |= {x: state[x.name] for x in (*symbols.q, *symbols.u)}
+        given |= {x: state[x.name] for x in symbols.x}
         found = {x: number(Fraction(value)) for x, value in given.items()}
         inputs = _own_inputs(self.phase)
         return found | dict(zip(inputs, evaluate(tuple(inputs.values()), found, fifty_digits()), strict=True))
@@ -509,7 +509,7 @@ class _Asking:
         formulas = {text: requested_of(self.model, text).value for text in texts}
         instants = instants_of(samples, 0.0, time)
         symbols = self.phase.system.symbols
-        x = (*symbols.q, *symbols.u)
+        x = symbols.x
         begun: dict[str, Any] = {name: self._start(name)[1] for name in to}
         start = np.array([float(self._numbers[node]) for node in x])
         changes = {name: np.array([float(seeds.get(node, 0)) for node in x]) for name, seeds in begun.items()}

@@ -74,7 +74,7 @@ def changing_run(
     rates = _rates(phase)
     _refuse_jumps(system, rates)
     symbols, graph = system.symbols, system.scope.graph
-    x = (*symbols.q, *symbols.u)
+    x = symbols.x
     s = {name: tuple(graph.symbol(f"d({node.name})/d({name})") for node in x) for name in changes}
     along = {name: {**seeds, **dict(zip(x, s[name], strict=True))} for name, seeds in changes.items()}
     extended = replace(symbols, u=(*symbols.u, *(node for own in s.values() for node in own)))
@@ -108,7 +108,7 @@ def _refuse_jumps(system: System, rates: Sequence[Scalar]) -> None:
         names = ", ".join(f"'{x}'" for x in system.scope.model.changing)
         what = f"{names} may change along the way (open, stick, slide): a motion in phases has no derivative here"
         raise NotYet(what, fix="differences of two runs, or a stretch of one phase as a model of its own")
-    moving = (*system.symbols.q, *system.symbols.u, *system.symbols.parameters.values())
+    moving = (*system.symbols.x, *system.symbols.parameters.values())
     if any(node.op in JUMPS and depends_on(node, moving) for node in order(rates)):
         raise NotYet(
             "a force jumps along the way: the variational equations do not hold across it",

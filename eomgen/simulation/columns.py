@@ -47,7 +47,7 @@ class OutputColumns:
         model = self.phase
         inner = model.functions.inner(x)
         moving = begun(t, inner, model.functions.rhs.at(model.p), model.slowest)
-        names, p = (*model.coordinates, *model.speeds), model.parameters_along(t, x)
+        names, p = model.moving, model.parameters_along(t, x)
         found: dict[str, np.ndarray] = {}
         for part in self._parts:
             kept = [names.index(node.name) for node in part.states]
@@ -115,7 +115,7 @@ class _Columns:
     @property
     def states(self) -> tuple[Node, ...]:
         symbols = self.system.symbols
-        return (*symbols.q, *symbols.u)
+        return symbols.x
 
     @property
     def refused(self) -> dict[str, str]:
@@ -134,7 +134,8 @@ class _Columns:
         columns = [x]
         with np.errstate(all="ignore"):
             if symbols.u:
-                columns.append(self.functions.rhs.many(t, moving, p)[:, len(symbols.q) :])
+                rates = self.functions.rhs.many(t, moving, p)
+                columns.append(rates[:, len(symbols.q) : len(symbols.q) + len(symbols.u)])
             if self._multipliers:
                 columns.append(self.functions.function(self._multipliers).many(t, moving, p))
             if made.reactions:
@@ -222,10 +223,10 @@ class _Columns:
 
     @cached_property
     def _program(self) -> RightHandSide:
-        """Every formula as a function of t, (q, u, a, lam, rho) and p."""
+        """Every formula as a function of t, (q, u, z, a, lam, rho) and p."""
         symbols = self.system.symbols
         beside = (*symbols.a, *self._multipliers, *self._made.reactions)
-        symbols = replace(symbols, u=symbols.u + beside)
+        symbols = replace(symbols, z=symbols.z + beside)
         return compiled(program_of(tuple(self._made.scalars.values()), symbols, inputs=self.system.inputs), "numpy")
 
 

@@ -242,6 +242,7 @@ class CompiledSteps:
                 found = made[0](slope.p)
                 self._kept.append(found)
                 m.slope, m.has_slope, m.slope_speeds, m.slope_rows = function_at(found), 1, slope.n, slope.k
+                m.slope_states = slope.states
                 s = slope.n + slope.k
                 m.work = self._put(np.zeros(max(self._work, len(slope.function.program.outputs) + s * s)))
                 m.pivots = self._put(np.zeros(max(3 * n, s, self._most_rows), dtype=np.int32))

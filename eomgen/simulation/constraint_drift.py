@@ -97,7 +97,7 @@ class Projection:
 
     def is_open(self, t: float, x: np.ndarray, allowed: float) -> bool:
         """True if a constraint is open by more than is allowed, and by more than rounding."""
-        return not self._gap(t, x, slice(None)) <= max(allowed, rounding_of(x))
+        return not self._gap(t, x, slice(None)) <= max(allowed, rounding_of(x[: self.size]))
 
     def closed(self, t: float, x: np.ndarray, allowed: float) -> tuple[np.ndarray, float]:
         """(the nearest state in which the constraints hold, their residual there).
@@ -107,7 +107,7 @@ class Projection:
                 position, where residuals are divided by a determinant that vanishes.
         """
         found = at_unit_norms(x, self.unit_quaternions)
-        enough = max(FAR * allowed, rounding_of(x)) if allowed > 0 else 0.0
+        enough = max(FAR * allowed, rounding_of(x[: self.size])) if allowed > 0 else 0.0
         for rows in (self.positions, self.speeds):
             if rows is not None:
                 closing = Newton(enough, steps=STEPS, stalls=math.inf, share=1.0, least=rows.change)
@@ -235,7 +235,7 @@ def _rows(
 
 
 def _compiled(outputs: tuple[Scalar, ...], system: System, target: str | None) -> RightHandSide:
-    program = program_of(outputs, system.symbols, inputs=system.inputs)
+    program = program_of(outputs, replace(system.symbols, z=()), inputs=system.inputs)
     return compiled(program, target if program.count.total > SHORT else "numpy")
 
 

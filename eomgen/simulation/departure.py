@@ -61,7 +61,7 @@ class RestDeparture:
 
     @property
     def _x0(self) -> np.ndarray:
-        return np.array([self.start[node] for node in (*self.equations.symbols.q, *self.equations.symbols.u)])
+        return np.array([self.start[node] for node in self.equations.symbols.x])
 
     def _functions(self, scalars: tuple[Scalar, ...]) -> Callable[[float, np.ndarray], np.ndarray]:
         """Scalars as functions of t and x."""
@@ -118,7 +118,7 @@ class RestDeparture:
     def _exact_start(self) -> State:
         """The start in exact numbers where it has no closed form."""
         return self.exact or {
-            node: Fraction(self.start[node]) for node in (*self.equations.symbols.q, *self.equations.symbols.u)
+            node: Fraction(self.start[node]) for node in self.equations.symbols.x
         }
 
     @property
@@ -182,7 +182,7 @@ class RestDeparture:
         )
         at = state(arrival.x, sense)
         speeds = shares(self.t0, at) * at[len(symbols.q) + symbols.u.index(speed)]
-        names = (*symbols.q, *symbols.u)
+        names = symbols.x
         return {symbols.t: math.nan} | dict(zip(names, map(float, (*arrival.x, *speeds)), strict=True))
 
     def _square(self, speed: Node) -> Scalar:

@@ -90,6 +90,7 @@ def integrate(
         x=run.x,
         coordinates=rhs.coordinates,
         speeds=rhs.speeds,
+        states=rhs.states,
         energies=None if E is None else lambda: E,
         measure=lambda: kept,
         phases=(Phase(start, run.end, run.message, (0, len(run.t)), tracked=lambda: track),),

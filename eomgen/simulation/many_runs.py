@@ -121,7 +121,7 @@ class March(ctypes.Structure):
         *_fields(_AT, "lengths sizes"),
         *_fields(SIZE, "is_implicit is_auto dense_of stiff_seen easy_seen most_seen implicit_steps"),
         ("slope", MarchFunction),
-        *_fields(SIZE, "has_slope slope_speeds slope_rows has_slope_values is_fresh has_lu"),
+        *_fields(SIZE, "has_slope slope_speeds slope_rows slope_states has_slope_values is_fresh has_lu"),
         *_fields(_REAL, "fastest h_older error_old"),
         *_fields(_AT, "jac real both Z pivots"),
         ("energies", MarchFunction),
@@ -195,8 +195,8 @@ class ManyStarts:
             given: starts in place of the model's, a number a run.
         """
         symbols, places = self._system.symbols, len(self._system.symbols.q)
-        x = np.zeros((len(p), places + len(symbols.u)))
-        names = [node.name for node in (*symbols.q, *symbols.u)]
+        x = np.zeros((len(p), len(symbols.x)))
+        names = [node.name for node in symbols.x]
         x[:, :places] = self._places.many(0.0, x, p)
         columns = {names.index(name): values for name, values in given.items()}
         for k in (k for k in columns if k < places):
@@ -244,8 +244,8 @@ class ManyStarts:
         phase, symbols = self.phase, self._system.symbols
         if phase.system is self._system:
             return x
-        known = dict(zip((node.name for node in (*symbols.q, *symbols.u)), x.T, strict=True))
-        names = (*phase.coordinates, *phase.speeds)
+        known = dict(zip((node.name for node in symbols.x), x.T, strict=True))
+        names = phase.moving
         found = np.array([known.get(name, np.zeros(len(x))) for name in names]).reshape(len(names), len(x)).T
         rates = phase.functions.kinematic(self._system.scope.rates).many(0.0, np.ascontiguousarray(found), p)
         known = {f"{q}'": rate for q, rate in zip(phase.coordinates, rates.T, strict=True)} | known
@@ -278,7 +278,10 @@ class ManyStarts:
 
     @cached_property
     def _speeds(self) -> RightHandSide:
-        return self._of(tuple(start_speeds(self._system).values()))
+        """Function of the speeds at the start, and of the states of first order."""
+        scope = self._system.scope
+        states = (scope.value(part.start) for part in scope.model.states.values())
+        return self._of((*start_speeds(self._system).values(), *states))
 
     def _of(self, scalars: tuple[Scalar, ...]) -> RightHandSide:
         return compiled(program_of(scalars, self._system.symbols, inputs=self._system.inputs), "numpy")

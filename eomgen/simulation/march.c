@@ -49,7 +49,7 @@ struct march {
     size_t is_implicit, is_auto, dense_of; /* dense_of: whether F is that of an implicit step */
     size_t stiff_seen, easy_seen, most_seen, implicit_steps;
     struct rate slope;
-    size_t has_slope, slope_speeds, slope_rows, has_slope_values, is_fresh, has_lu;
+    size_t has_slope, slope_speeds, slope_rows, slope_states, has_slope_values, is_fresh, has_lu;
     double fastest, h_older, error_old;
     double *jac, *real, *both, *Z; /* n n, n n, 4 n n, 7 n */
     int *pivots;                   /* 3 n, or as many as speeds and rows */

@@ -344,7 +344,7 @@ class FirstTime:
         Raises:
             RunFailed: the condition is not met.
         """
-        if not depends_on(self.condition, (*self.equations.symbols.q, *self.equations.symbols.u)):
+        if not depends_on(self.condition, self.equations.symbols.x):
             return self._at_time(), "integration in time"
         if (departure := self._departure()).is_needed:
             return departure.first(self.condition), "energy theorem"
@@ -364,7 +364,7 @@ class FirstTime:
     @cached_property
     def _here(self) -> PhaseStart:
         symbols = self.equations.symbols
-        begun = {node.name: float(self.start[node]) for node in (*symbols.q, *symbols.u)}
+        begun = {node.name: float(self.start[node]) for node in symbols.x}
         return PhaseStart(self.t0, self._phase.with_rates(self.t0, begun), Configuration())
 
     def _departure(self) -> RestDeparture:
@@ -373,7 +373,7 @@ class FirstTime:
 
     def _state(self, run: Run) -> State:
         symbols, values = self.equations.symbols, self._phase.values(run.end, run.last)
-        return {symbols.t: run.end} | {node: values[node.name] for node in (*symbols.q, *symbols.u)}
+        return {symbols.t: run.end} | {node: values[node.name] for node in symbols.x}
 
     def _at_time(self) -> State:
         """The state at a time that is given by itself.
@@ -434,7 +434,7 @@ class FirstTime:
         if values:
             raise DerivationError(f"the instant t = {max(values):g} s is before the start", fix="ask for a later one")
         function = compiled(program_of((self.condition,), self.equations.symbols), "numpy")
-        x = np.array([self.start[node] for node in (*self.equations.symbols.q, *self.equations.symbols.u)])
+        x = np.array([self.start[node] for node in self.equations.symbols.x])
         events = Events(
             lambda t, _: function.many(t, np.tile(x, (len(t), 1)), self._phase.p), np.full(1, tolerances.COMPUTED), (0,)
         )

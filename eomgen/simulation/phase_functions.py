@@ -15,7 +15,7 @@ from eomgen.symbolic.expression import Scalar
 
 @dataclass(frozen=True)
 class PhaseFunctions:
-    """Functions of the states x = (q, u, slacks) of one phase.
+    """Functions of the states x = (q, u, z, slacks) of one phase.
 
     Args:
         equations: of motion, friction included.
@@ -64,19 +64,19 @@ class PhaseFunctions:
         return len(self.equations.symbols.q)
 
     def inner(self, x: np.ndarray) -> np.ndarray:
-        """(q, u) of states."""
-        return np.ascontiguousarray(x[..., : self.places + len(self.equations.symbols.u)])
+        """(q, u, z) of states."""
+        return np.ascontiguousarray(x[..., : len(self.equations.symbols.x)])
 
     def slacks(self, x: np.ndarray) -> np.ndarray:
         """Slack of each string whose slack is integrated, not given by a formula."""
-        return x[..., self.places + len(self.equations.symbols.u) :]
+        return x[..., len(self.equations.symbols.x) :]
 
     def evaluated(self, t: np.ndarray, x: np.ndarray, scalars: tuple[Scalar, ...]) -> np.ndarray:
-        """Functions of q, u, t, accelerations and multipliers along the states, n x scalars."""
+        """Functions of q, u, z, t, accelerations and multipliers along the states, n x scalars."""
         return self.function(scalars).many(t, self.inner(x), self.p)
 
     def function(self, scalars: tuple[Scalar, ...]) -> RightHandSide:
-        """Functions of q, u, t, accelerations and multipliers, compiled."""
+        """Functions of q, u, z, t, accelerations and multipliers, compiled."""
         return self._once(("in motion", scalars), lambda: self._function(scalars))
 
     def _function(self, scalars: tuple[Scalar, ...]) -> RightHandSide:

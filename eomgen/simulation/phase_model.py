@@ -48,7 +48,7 @@ Values = Mapping[str, float]
 
 @dataclass(frozen=True)
 class PhaseModel:
-    """The model of one phase. Its state is x = (q, u), and after these the slack of each string that hangs loose.
+    """The model of one phase. Its state is x = (q, u, z), and after these the slack of each string that hangs loose.
 
     Args:
         watch: its system, with the signals of its contacts.
@@ -124,6 +124,16 @@ class PhaseModel:
     def speeds(self) -> tuple[str, ...]:
         return tuple(u.name for u in self.system.symbols.u)
 
+    @property
+    def states(self) -> tuple[str, ...]:
+        """The states of first order."""
+        return tuple(z.name for z in self.system.symbols.z)
+
+    @property
+    def moving(self) -> tuple[str, ...]:
+        """Everything in x = (q, u, z) by name."""
+        return tuple(x.name for x in self.system.symbols.x)
+
     @cached_property
     def rate(self) -> StateRate:
         """(t, x) -> x', the slack of loose strings included."""
@@ -157,7 +167,7 @@ class PhaseModel:
 
     def _values(self, t: float, x: np.ndarray) -> dict[Node, float]:
         symbols = self.system.symbols
-        state = zip((*symbols.q, *symbols.u), self.functions.inner(x).tolist(), strict=True)
+        state = zip(symbols.x, self.functions.inner(x).tolist(), strict=True)
         return {symbols.t: t, **dict(state), **dict(zip(symbols.parameters.values(), self.p.tolist(), strict=True))}
 
     @property
@@ -197,12 +207,12 @@ class PhaseModel:
 
     def state(self, values: Values) -> np.ndarray:
         """x of the phase; a displacement that did not exist before is 0."""
-        names = (*self.coordinates, *self.speeds, *map(self.slack_name, self.loose))
+        names = (*self.moving, *map(self.slack_name, self.loose))
         return np.array([values.get(name, 0.0) for name in names])
 
     def columns(self, t: np.ndarray, x: np.ndarray) -> dict[str, np.ndarray]:
-        """Coordinates, rates, speeds and slacks of n states, by name."""
-        named = dict(zip((*self.coordinates, *self.speeds), x.T, strict=False))
+        """Coordinates, rates, speeds, states and slacks of n states, by name."""
+        named = dict(zip(self.moving, x.T, strict=False))
         if any(f"{q}'" not in named for q in self.coordinates):
             rates = self.functions.kinematic(self.system.scope.rates).many(t, self.functions.inner(x), self.p)
             named |= {f"{q}'": column for q, column in zip(self.coordinates, rates.T, strict=True)}
@@ -226,6 +236,9 @@ class PhaseModel:
         """
         if not self.conservative:
             what = f"energy is not conserved: {WellPosed(self.equations).why_not_conservative}"
+            raise UsageError(what, fix='take stabilization "projection"')
+        if self.states:
+            what = "stabilization by the energy is not made for models with [states]"
             raise UsageError(what, fix='take stabilization "projection"')
         places, size = len(self.coordinates), len(self.coordinates) + len(self.speeds)
         energy = float(self.energies(np.array([t]), x[None, :]).sum())
@@ -329,13 +342,15 @@ def slope_of(equations: EquationsOfMotion, p: np.ndarray, target: str | None = N
         p: the parameters' values.
         target: the language in which a long function is run.
     """
-    states = equations.symbols.q + equations.symbols.u
+    states, further = equations.symbols.x, equations.system.scope.state_rates
     n, k = len(equations.M), len(equations.J)
     parts = (
         jacobian(kinematic_rates(equations), states),
         jacobian([x for rows in equations.residual for x in rows], states),
         equations.M,
         equations.J,
+        jacobian(further, states),
+        jacobian(further, equations.symbols.a),
     )
     entries = tuple(x for rows in parts for row in rows for x in row)
     program = program_of(
@@ -343,7 +358,7 @@ def slope_of(equations: EquationsOfMotion, p: np.ndarray, target: str | None = N
     )
     if program.count.total > LONG:
         return None
-    return ExactSlope(compiled(program, target if program.count.total > SHORT else "numpy"), p, n, k)
+    return ExactSlope(compiled(program, target if program.count.total > SHORT else "numpy"), p, n, k, len(further))
 
 
 @dataclass(frozen=True)
@@ -351,24 +366,28 @@ class ExactSlope:
     """(t, x) -> d(x')/dx.
 
     Args:
-        function: the derivatives of q' and of M a - J^T lam - forcing, J a + gamma, at fixed a and lam; M, J.
+        function: the derivatives of q' and of M a - J^T lam - forcing, J a + gamma, at fixed a and lam; M, J; those of
+            z' at fixed a, and by a.
         p: the parameters' values.
         n, k: speeds and rows of constraints.
+        states: states of first order.
     """
 
     function: RightHandSide
     p: np.ndarray
     n: int
     k: int
+    states: int = 0
 
     def __call__(self, t: float, x: np.ndarray) -> np.ndarray:
-        n, k, m = self.n, self.k, len(x)
-        ends = np.cumsum([(m - n) * m, (n + k) * m, n * n])
-        rates, residual, M, J = np.split(np.asarray(self.function(t, x, self.p)), ends)
+        n, k, z, m = self.n, self.k, self.states, len(x)
+        ends = np.cumsum([(m - n - z) * m, (n + k) * m, n * n, k * n, z * m])
+        rates, residual, M, J, further, by_a = np.split(np.asarray(self.function(t, x, self.p)), ends)
         M, J = M.reshape(n, n), J.reshape(k, n)
         matrix = np.block([[M, -J.T], [J, np.zeros((k, k))]])
         solved = np.linalg.lstsq(matrix, -residual.reshape(n + k, m), rcond=tolerances.LEAST_CHANGE)[0]
-        return np.vstack([rates.reshape(-1, m), solved[:n]])
+        changed = further.reshape(z, m) + by_a.reshape(z, n) @ solved[:n]
+        return np.vstack([rates.reshape(-1, m), solved[:n], changed])
 
 
 def edges_of(motion: Motion, open: Container[str] = ()) -> tuple[Edge, ...]:

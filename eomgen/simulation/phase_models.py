@@ -90,7 +90,7 @@ class WithoutContacts:
 
     def _x(self, values: Values) -> np.ndarray:
         symbols = self.system.symbols
-        return np.array([values.get(node.name, 0.0) for node in (*symbols.q, *symbols.u)])
+        return np.array([values.get(node.name, 0.0) for node in symbols.x])
 
     def _once(self, key: str, make: Callable[[], Any]) -> Any:
         if key not in self.made:
@@ -217,7 +217,7 @@ class Slides:
 
     def at(self, t: float, values: Values) -> dict[str, float]:
         """The sliding velocity of each contact."""
-        x = np.array([values.get(node.name, 0.0) for node in (*self.system.symbols.q, *self.system.symbols.u)])
+        x = np.array([values.get(node.name, 0.0) for node in self.system.symbols.x])
         found = self._velocities.many(np.array([t]), x[None, :], self.p)[0]
         return {contact.name: float(v) for contact, v in zip(self.contacts, found, strict=True)}
 

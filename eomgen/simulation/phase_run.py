@@ -160,13 +160,15 @@ def _reported(found: Trajectory, until: str | None) -> Trajectory:
 
 def _joined(models: PhaseModels, runs: Sequence[PhaseRun]) -> Trajectory:
     coordinates, speeds = _union(runs)
-    tables = [_table(phase_run, (*coordinates, *speeds)) for phase_run in runs]
+    states = runs[0].phase.states  # those of every phase alike
+    tables = [_table(phase_run, (*coordinates, *speeds, *states)) for phase_run in runs]
     ends = [0, *accumulate(len(phase_run.run.t) for phase_run in runs)]
     return Trajectory(
         t=np.concatenate([phase_run.run.t for phase_run in runs]),
         x=np.concatenate(tables),
         coordinates=coordinates,
         speeds=speeds,
+        states=states,
         energies=lambda: np.concatenate([sum(s.phase.energies(s.run.t, s.run.x)) for s in runs]),
         measure=lambda: Kept(_drift(runs), *_open(runs)),
         phases=tuple(
@@ -184,7 +186,7 @@ def _joined(models: PhaseModels, runs: Sequence[PhaseRun]) -> Trajectory:
 def _table(phase_run: PhaseRun, names: tuple[str, ...]) -> np.ndarray:
     """States of a phase over the names of all, n x names."""
     phase, t, x = phase_run.phase, phase_run.run.t, phase_run.run.x
-    if names == (*phase.coordinates, *phase.speeds) and not phase.loose:
+    if names == phase.moving and not phase.loose:
         return x
     found = phase.columns(t, x)
     none = np.zeros(len(t))

@@ -38,8 +38,9 @@ static void slope_by_differences(struct march *m)
 /* the same from the derivatives of q' and of M a - J^T lam - forcing, J a + gamma at fixed a, lam; M and J follow them */
 static void slope(struct march *m)
 {
-    size_t n = m->n, u = m->slope_speeds, k = m->slope_rows, q = n - u, s = u + k;
-    double *values = m->work, *right = values + q*n, *M = right + s*n, *J = M + u*u, *A = J + k*u;
+    size_t n = m->n, u = m->slope_speeds, k = m->slope_rows, z = m->slope_states, q = n - u - z, s = u + k;
+    double *values = m->work, *right = values + q*n, *M = right + s*n, *J = M + u*u;
+    double *further = J + k*u, *by_a = further + z*n, *A = by_a + z*u;
     if (!m->has_slope) {
         slope_by_differences(m);
         return;
@@ -57,6 +58,13 @@ static void slope(struct march *m)
     }
     back(s, A, m->pivots, n, right);
     memcpy(m->jac + q*n, right, u*n*sizeof *right);
+    for (size_t i = 0; i < z; i++)
+        for (size_t j = 0; j < n; j++) {
+            double sum = further[i*n + j];
+            for (size_t l = 0; l < u; l++)
+                sum += by_a[i*u + l]*right[l*n + j];
+            m->jac[(q + u + i)*n + j] = sum;
+        }
 }
 
 /* about the largest |eigenvalue|: |J^16|^(1/16) */

@@ -63,7 +63,8 @@ class ReactionColumns:
             p: parameters.
         """
         rates = self.rhs.many(t, x, p)
-        a = rates[:, rates.shape[1] - len(self.rhs.speeds) :]
+        first = len(self.rhs.coordinates)
+        a = rates[:, first : first + len(self.rhs.speeds)]
         numbers = self._numbers.many(t, np.hstack([x, a]), p)
         few = max(1, AT_ONCE // (1 + len(self.requested) * len(self._columns)))
         pieces = (self._cut(numbers[i : i + few]) for i in range(0, len(numbers), few))
@@ -117,10 +118,10 @@ class ReactionColumns:
 
     @cached_property
     def _numbers(self) -> RightHandSide:
-        """All entries as a function of t, (q, u, a) and p."""
+        """All entries as a function of t, (q, u, z, a) and p."""
         A, b, C = self._places
         system = self.reactions.balance.system
-        symbols = replace(system.symbols, u=system.symbols.u + system.symbols.a)
+        symbols = replace(system.symbols, z=system.symbols.z + system.symbols.a)
         outputs = (*(x for _, _, x in A), *b, *(x for _, _, x in C), *(named.given for named in self.requested))
         return compiled(program_of(outputs, symbols, inputs=system.inputs), "numpy")
 

@@ -132,8 +132,8 @@ class Trajectory:
 
     Args:
         t: times, n [s], one row each: strictly later from row to row.
-        x: states (q, u), n x (nq + nu), in the order of `coordinates`, `speeds`.
-        coordinates, speeds: the names.
+        x: states (q, u, z), n x (nq + nu + nz), in the order of `coordinates`, `speeds`, `states`.
+        coordinates, speeds, states: the names; of the last those of first order.
         energies: -> `energy`, found on demand; None where it is not given.
         measure: -> the errors of energy and constraints, found on demand.
         phases: in order.
@@ -181,6 +181,12 @@ class Trajectory:
     quantities: Mapping[str, Any] = field(default_factory=dict)
     estimate: Callable[[Trajectory], Any] | None = None
     watch: Callable[[Trajectory], tuple[Any, ...]] | None = field(default=None, repr=False)
+    states: tuple[str, ...] = ()
+
+    @property
+    def moving(self) -> tuple[str, ...]:
+        """Everything in x = (q, u, z) by name."""
+        return self.coordinates + self.speeds + self.states
 
     def __getstate__(self) -> dict[str, Any]:
         """All its numbers. What needs the equations again (`certify`, `ask`, `accuracy`) does not go into a pickle."""
@@ -350,15 +356,15 @@ class Trajectory:
         return len(self.t)
 
     def __getitem__(self, name: str) -> np.ndarray:
-        """The column of a coordinate or speed, of "t", "energy", a reaction ("reaction_x(B)") or an output."""
+        """The column of a coordinate, speed or state, of "t", "energy", a reaction ("reaction_x(B)") or an output."""
         columns = self.columns()
         if name not in columns:
             raise KeyError(f"no column '{name}'; there are {', '.join(columns)}")
         return columns[name]
 
     def columns(self) -> dict[str, np.ndarray]:
-        """Every column by name: t, coordinates, speeds, energy, reactions, outputs ("theta (output)" next to theta)."""
-        named = {"t": self.t} | dict(zip(self.coordinates + self.speeds, self.x.T, strict=True))
+        """Every column by name: t, coordinates, speeds, states, energy, reactions, outputs ("theta (output)" next to theta)."""
+        named = {"t": self.t} | dict(zip(self.moving, self.x.T, strict=True))
         named |= ({} if self.energy is None else {"energy": self.energy}) | dict(self.reactions)
         return named | {f"{name}{OUTPUT}" if name in named else name: y for name, y in self.outputs.items()}
 
@@ -392,13 +398,15 @@ class Trajectory:
             path.write(text.getvalue())
 
     def to_npz(self, path: str | Path) -> None:
-        """numpy's archive: t, x, coordinates, speeds, energy, reactions, outputs (n x names) and their names, status.
+        """numpy's archive: t, x, coordinates, speeds, states, energy, reactions, outputs (n x names) and their names, status.
 
         Raises:
             WriteFailed: the file cannot be written; the old file is then unchanged.
         """
         arrays: dict[str, Any] = {"t": self.t, "x": self.x, "status": self.status, "message": self.message}
         arrays |= {"coordinates": np.array(self.coordinates, dtype=str), "speeds": np.array(self.speeds, dtype=str)}
+        if self.states:
+            arrays["states"] = np.array(self.states, dtype=str)
         if self.energy is not None:
             arrays["energy"] = self.energy
         for what, table in (("reaction", self.reactions), ("output", self.outputs)):
@@ -457,7 +465,7 @@ class Trajectory:
         return f"From this start nothing moves: it is an equilibrium. Start near it ({near}), or with a speed."
 
     def __repr__(self) -> str:
-        names = ", ".join((*self.coordinates, *self.speeds))
+        names = ", ".join(self.moving)
         names = names if len(names) < SHOWN else f"{len(self.coordinates)} coordinates, {len(self.speeds)} speeds"
         return f"<trajectory of {names}: {len(self.t)} instants. {self.summary()}>"
 

@@ -303,7 +303,7 @@ class Accuracy:
             share: of the difference that is this run's error: 1 where the other is finer.
         """
         common, mine, its = np.intersect1d(run.t, other.t, return_indices=True)
-        if run.coordinates + run.speeds != other.coordinates + other.speeds or not len(common):
+        if run.moving != other.moving or not len(common):
             return None
         ended = common[-1] < run.t[-1]  # the other came to another end
         if ended and abs(run.t[-1] - other.t[-1]) <= tolerances.SAME_PLACE * (

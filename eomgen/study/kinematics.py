@@ -124,7 +124,7 @@ def _on_the_way(model: Model, at: WrittenEquation | None) -> KinematicState:
     phase, exact, numbers = moment.phase, moment.exact, moment.numbers
     symbols = phase.system.symbols
     refuse_lost({q: numbers[q] for q in symbols.q if q in numbers})
-    needed = (*symbols.q, *symbols.u, *([symbols.t] if _sees_time(phase) else []))
+    needed = (*symbols.x, *([symbols.t] if _sees_time(phase) else []))
     whole = all(node in exact for node in needed) and (not numbers or sum(map(text_size, exact.values())) <= LONG)
     moving = dict(exact) if whole else exact_numbers(numbers)
     if not moving and (symbols.q or symbols.u):

@@ -85,8 +85,8 @@ def carried(moment: StateAtInstant, phase: Study) -> dict[Node, Scalar]:
     """
     symbols = phase.system.symbols
     known = {node.name: x for node, x in moment.exact.items()}
-    old = {x.name for x in (*moment.phase.system.symbols.q, *moment.phase.system.symbols.u)}
-    wanted = [symbols.t, *symbols.q, *symbols.u]
+    old = {x.name for x in moment.phase.system.symbols.x}
+    wanted = [symbols.t, *symbols.x]
     if any(node.name not in known and (node.name in old or node is symbols.t) for node in wanted):
         known = _with_rates(moment, known)
     if any(node.name not in known and (node.name in old or node is symbols.t) for node in wanted):
@@ -204,7 +204,7 @@ class _Search:
             RunFailed: the condition is met at none of the trials.
         """
         symbols, rng = self.phase.system.symbols, Random(1)
-        if not {*symbols.q, *symbols.u} <= self.start.keys():
+        if not {*symbols.x} <= self.start.keys():
             raise RunFailed("the start has no closed form, and no numbers", fix="give the parameters values")
         reason: EomgenError = RunFailed("no trial was made")
         parameters = symbols.parameters.values()
@@ -222,7 +222,7 @@ class _Search:
     def closed(self, numbers: State, values: State) -> tuple[State, str]:
         """State in closed form, and the name of the method; "" where the method of the numbers describes it better."""
         symbols = self.phase.system.symbols
-        moving = {*symbols.q, *symbols.u}
+        moving = {*symbols.x}
         if not moving <= self.start.keys():
             return {}, ""
         positive = self.phase.system.scope.positive | {q for q in symbols.q if numbers[q] > 0}
@@ -391,7 +391,7 @@ class MotionFromStart:
         """
         symbols = self.phase.system.symbols
         scalar = self.phase.difference(condition)
-        if depends_on(scalar, (*symbols.q, *symbols.u)):
+        if depends_on(scalar, symbols.x):
             return False
         if not depends_on(scalar, (symbols.t, *symbols.inputs.values())):
             raise RunFailed(
@@ -512,7 +512,7 @@ class MotionFromStart:
         """
         phase, p = self.phase, self.p
         system, symbols = phase.system, phase.system.symbols
-        x0 = np.array([self.numbers[node] for node in (*symbols.q, *symbols.u)])
+        x0 = np.array([self.numbers[node] for node in symbols.x])
         run = integrate(
             compiled(right_hand_side(phase.explicit_while_sliding), "numpy"),
             time=time,
@@ -604,7 +604,7 @@ def _end_of(phase: Study, run: PhaseRun, ended_by: Scalar | None, start: Mapping
 def _numbers(phase: Study, t: float, values: Mapping[str, float]) -> dict[Node, float]:
     """State by the symbols of a phase; a displacement that does not exist yet is 0."""
     symbols = phase.system.symbols
-    return {symbols.t: t} | {node: values.get(node.name, 0.0) for node in (*symbols.q, *symbols.u)}
+    return {symbols.t: t} | {node: values.get(node.name, 0.0) for node in symbols.x}
 
 
 def _jumps(end: Mapping[str, float], start: Mapping[str, float]) -> bool:

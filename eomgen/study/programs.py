@@ -36,6 +36,7 @@ from eomgen.symbolic.expression import (
     ScalarRow,
     ScalarRows,
     depends_on,
+    inner,
     is_zero,
     jacobian,
     substituted,
@@ -246,11 +247,12 @@ class Matrices:
 
 
 def slopes_of(equations: EquationsOfMotion) -> Matrices:
-    """The slopes of x' = (N u + nu, a): A = d x'/d x and, where there are inputs, B = d x'/d inputs.
+    """The slopes of x' = (N u + nu, a, z'): A = d x'/d x and, where there are inputs, B = d x'/d inputs.
 
     From the matrix of the motion itself, factored once, with its pivots where constraints close:
 
         [[M, -J^T], [J, 0]] [da; dlam] = -d(M a - J^T lam - forcing, J a + gamma) at fixed a, lam
+        dz' = Z_x dx + Z_a da
 
     Where no constraints close and it takes fewer operations, those of the accelerations written out.
 
@@ -260,7 +262,8 @@ def slopes_of(equations: EquationsOfMotion) -> Matrices:
     if equations.J and not equations.friction:
         return _solved(equations)
     a = equations.accelerations or factor_solution(equations.M, equations.forcing)
-    rates = (*kinematic_rates(equations), *a)
+    known = dict(zip(equations.symbols.a, a, strict=True))
+    rates = (*kinematic_rates(equations), *a, *substituted(equations.system.scope.state_rates, known))
     found = [Matrices({name: jacobian(rates, x) for name, x in _columns(equations).items()})]
     if not equations.friction:
         found.append(_written_out(equations, a) if is_short(equations) else _solved(equations))
@@ -274,14 +277,35 @@ def _written_out(equations: EquationsOfMotion, a: ScalarRow) -> Matrices:
     for name, states in _columns(equations).items():
         changes = zip(*jacobian(left, states), strict=True)
         slopes = [factor_solution(equations.M, [-y for y in substituted(column, known)]) for column in changes]
-        blocks[name] = (*jacobian(rates, states), *zip(*slopes, strict=True))
+        da = tuple(zip(*slopes, strict=True))
+        blocks[name] = (*jacobian(rates, states), *da, *_of_states(equations, states, da, known))
     return Matrices(blocks)
+
+
+def _of_states(
+    equations: EquationsOfMotion, states: Sequence[Node], da: ScalarRows, known: Mapping[Node, Scalar]
+) -> list[ScalarRow]:
+    """dz' = Z_x + Z_a da of the states of first order, one row each.
+
+    Args:
+        states: by which the slopes are taken.
+        da: those of the accelerations, one row each.
+        known: accelerations that have a formula.
+    """
+    rates, a = equations.system.scope.state_rates, equations.symbols.a
+    direct = [substituted(row, known) for row in jacobian(rates, states)]
+    along = [substituted(row, known) for row in jacobian(rates, a)]
+    columns = [tuple(row[j] for row in da) for j in range(len(states))]
+    return [
+        tuple(x + inner(by_a, column) for x, column in zip(row, columns, strict=True))
+        for row, by_a in zip(direct, along, strict=True)
+    ]
 
 
 def _columns(equations: EquationsOfMotion) -> dict[str, tuple[Node, ...]]:
     """Variables with respect to which A and B are derivatives, by the name of the block."""
     symbols = equations.symbols
-    columns: dict[str, tuple[Node, ...]] = {"A": (*symbols.q, *symbols.u)}
+    columns: dict[str, tuple[Node, ...]] = {"A": symbols.x}
     return columns | ({"B": tuple(symbols.inputs.values())} if symbols.inputs else {})
 
 
@@ -299,8 +323,8 @@ def _solved(equations: EquationsOfMotion) -> Matrices:
             if not all(map(is_zero, column))
         }
         moved = {x: dict(zip(motion.unknowns, solves[x].unknowns, strict=True)) for x in states if x in solves}
-        below = (tuple(moved[x][a] if x in moved else 0 for x in states) for a in symbols.a)
-        blocks[name] = (*jacobian(rates, states), *below)
+        below = tuple(tuple(moved[x][a] if x in moved else 0 for x in states) for a in symbols.a)
+        blocks[name] = (*jacobian(rates, states), *below, *_of_states(equations, states, below, {}))
     return Matrices(blocks, motion, tuple(solves.values()))
 
 
@@ -432,7 +456,7 @@ class GivenMotion:
         scalar = scope.value(time_law(model, name, law, "motion").named(name))
         rate = tangent((scalar,), {symbols.t: 1})
         scalars = (scalar, *rate, *tangent(rate, {symbols.t: 1}))
-        strangers = [x.name for x in (*symbols.q, *symbols.u) if depends_on(scalar, (x,))]
+        strangers = [x.name for x in symbols.x if depends_on(scalar, (x,))]
         if strangers:
             raise UsageError(f"the motion of '{name}' depends on '{strangers[0]}'", fix="give it as a function of t")
         program = program_of(scalars, symbols, inputs=self.system.inputs)

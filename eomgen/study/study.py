@@ -228,7 +228,7 @@ class Study:
         from eomgen.simulation import ReactionColumns
 
         p, symbols, start = parameter_vector(self.model), self.system.symbols, list(self.state_at_start.values())
-        known = {x: Fraction(value) for x, value in zip((*symbols.q, *symbols.u), start, strict=True)}
+        known = {x: Fraction(value) for x, value in zip(symbols.x, start, strict=True)}
         refuse_jump(self.system, known | {symbols.t: Fraction(0)})
         columns = ReactionColumns(self.reactions, compiled(self.program, "numpy"))
         values = columns.along(np.zeros(1), np.array([start]), p)[0]
@@ -519,7 +519,7 @@ class Study:
         (scalar,) = substituted((self._known(scalar, quantities),), state)
         symbols = self.system.symbols
         left = [
-            x.name for x in (symbols.t, *symbols.q, *symbols.u, *symbols.a, *symbols.lam) if depends_on(scalar, (x,))
+            x.name for x in (symbols.t, *symbols.x, *symbols.a, *symbols.lam) if depends_on(scalar, (x,))
         ]
         if left:
             raise MissingValues(tuple(left))
@@ -586,7 +586,7 @@ class Study:
         rows = [{j: next(flat) for j in row} for row in rows]
         solution = LinearSystem(rows, needed, len(right), values_at_a_state(self.system, entries)).solution()
         names = (*symbols.a, *(symbols.lam[m] for m in kept))
-        missing = [x for x in (symbols.t, *symbols.q, *symbols.u) if x not in state]  # results with one are not used
+        missing = [x for x in (symbols.t, *symbols.x) if x not in state]  # results with one are not used
         found = {names[j]: x for j, x in solution.constants.items() if solution.determined(j)}
         return {name: self.simple(x) if readable and not depends_on(x, missing) else x for name, x in found.items()}
 

@@ -203,7 +203,7 @@ SCALES = {"length": Fraction(3, 2), "mass": Fraction(5, 7), "time": Fraction(4, 
 
 def factor_of(unit: str | None) -> Fraction:
     """How many of the new units of this dimension one of SI is."""
-    dims = dict(zip(SCALES, (0, 0, 0) if unit is None else Unit.parse(unit).dimension, strict=True))
+    dims = dict(zip(SCALES, (0, 0, 0) if unit is None else Unit.parse(unit).dimension, strict=False))
     return Fraction(math.prod(SCALES[d] ** n for d, n in dims.items()))
 
 

@@ -97,13 +97,16 @@ class Closure:
             p = {name: value * rng.uniform(0.8, 1.2) if value else rng.uniform(0.05, 0.2) for name, value in p.items()}
         given = {node: p[name] for name, node in symbols.parameters.items()} | {symbols.t: 0.0}
         given |= {node: rng.uniform(-1, 1) for node in (*symbols.u, *symbols.a)}
+        begun = model.start_values(p)
+        near = ((z, float(begun[1][z.name])) for z in symbols.z)
+        given |= {z: value + rng.uniform(-0.1, 0.1) * (1 + abs(value)) for z, value in near}
         state = {node: fifty_digits().number(value) for node, value in given.items()}
         for name, node in symbols.inputs.items():
             try:
                 state[node] = evaluate((scope.value(model.inputs[name].value),), state, fifty_digits())[0]
             except NoValue:  # at t = 0, as 1/t: of another instant then
                 state[node] = fifty_digits().number(rng.uniform(-1, 1))
-        return state, model.start_values(p)[0] | model.first_guesses(p)
+        return state, begun[0] | model.first_guesses(p)
 
     def rows_at(self, state: State) -> np.ndarray:
         """J of the constraint rows at a state in which they hold, k x nu; entries that vanish there are exactly 0.

@@ -219,7 +219,7 @@ class Contributions:
     def _varying(self) -> tuple[Node, ...]:
         """The symbols of which a constant force holds none."""
         symbols = self.operator.base.symbols
-        return (symbols.t, *symbols.q, *symbols.u, *symbols.inputs.values(), *(symbols.unknowns or {}).values())
+        return (symbols.t, *symbols.x, *symbols.inputs.values(), *(symbols.unknowns or {}).values())
 
     def _others(self) -> list[Contribution]:
         """Friction, and what the constraints do."""

@@ -87,7 +87,7 @@ class Explicit:
         symbols, kept = self.equations.symbols, Rank(self.equations.system.constraints).regular()
         if len(symbols.a) + len(kept) > cramer.LARGEST_BLOCK:
             return None
-        moving = (*symbols.q, *symbols.u, *symbols.inputs.values(), symbols.t)
+        moving = (*symbols.x, *symbols.inputs.values(), symbols.t)
         rows, divisors = [], []
         for row, bias in zip(self.equations.J, self.equations.gamma, strict=True):
             whole = tuple(simple(x) for x in (*row, bias))

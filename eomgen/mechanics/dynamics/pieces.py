@@ -206,7 +206,7 @@ class Division:
 def moving_symbols(system: System) -> frozenset[Node]:
     """Symbols that change along a motion: t, q, u, a, lam and the inputs."""
     symbols = system.symbols
-    return frozenset((symbols.t, *symbols.q, *symbols.u, *symbols.a, *symbols.lam, *symbols.inputs.values()))
+    return frozenset((symbols.t, *symbols.x, *symbols.a, *symbols.lam, *symbols.inputs.values()))
 
 
 def division_of(equations: EquationsOfMotion, scalars: Sequence[Scalar]) -> Division | None:

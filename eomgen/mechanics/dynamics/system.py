@@ -461,7 +461,7 @@ def _over(old: Scope, new: Scope, u: Sequence[Node], rows: SpeedRows) -> Scope:
     rates = {f"{q.name}'": rate for q, rate in zip(new.symbols.q, new.rates, strict=True)}
     second = new.with_accelerations(tuple(rates.values()))
     names = {**old.names, **rates, **{f"{name}'": x for name, x in zip(rates, second, strict=True)}}
-    return replace(new, names=names | {x.name: x for x in (*new.symbols.u, *new.symbols.a)})
+    return replace(new, names=names | {x.name: x for x in (*new.symbols.u, *new.symbols.a)}).with_states_named()
 
 
 # -- what cannot be ----------------------------------------------------------------------------------

@@ -627,7 +627,7 @@ def _marks(statics: StaticEquations, slopes: ScalarRows, z: np.ndarray, values: 
     _, sizes, axes = np.linalg.svd(J)
     Z = axes[int(np.sum(sizes > tolerances.CARRIED * sizes[0])) :].T
     symbols = statics.system.symbols
-    given = {**{x: 0.0 for x in (*symbols.q, *symbols.u)}, symbols.t: 0.0}
+    given = {**{x: 0.0 for x in symbols.x}, symbols.t: 0.0}
     (V,) = evaluate((statics.system.loads.potential_energy,), {**_given(statics, values), **given, **values}, FLOAT)
     spectrum = np.linalg.eigvals(Z.T @ H @ Z)
     return np.array([V, *sorted(spectrum.real)], dtype=float)

@@ -315,7 +315,7 @@ class Constants:
     def some_place(self, place: Vector) -> Vector | None:
         """A place on the way of one that moves, as functions of the parameters: where it is at the start, if known."""
         symbols = self.possible.system.symbols
-        moving = (symbols.t, *symbols.q, *symbols.u, *symbols.a)
+        moving = (symbols.t, *symbols.x, *symbols.a)
         for state in self._states(moving):
             x, y, z = (simplest(x, Work.VALUE, self.positive) for x in substituted(place, state))
             if not any(depends_on(each, moving) for each in (x, y, z)):
@@ -325,7 +325,7 @@ class Constants:
     @property
     def _moving(self) -> tuple[Node, ...]:
         symbols = self.possible.system.symbols
-        return (symbols.t, *symbols.q, *symbols.u, *symbols.a, *self.possible.jerks)
+        return (symbols.t, *symbols.x, *symbols.a, *self.possible.jerks)
 
     def _states(self, moving: tuple[Node, ...]) -> Iterator[dict[Node, Scalar]]:
         """Exact states: those with the coordinates of the start, and where nothing constraints them any others."""

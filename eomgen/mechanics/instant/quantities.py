@@ -466,7 +466,7 @@ def _acts_on(load: Load, body: str | None) -> bool:
 
 def _is_constant(system: System, load: PointForce) -> bool:
     symbols = system.symbols
-    return load.axes is None and not any(depends_on(x, (*symbols.q, *symbols.u, symbols.t)) for x in load.force)
+    return load.axes is None and not any(depends_on(x, (*symbols.x, symbols.t)) for x in load.force)
 
 
 def power_of_loads(system: System, name: str | None = None) -> Scalar:

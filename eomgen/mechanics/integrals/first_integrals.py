@@ -121,7 +121,7 @@ class FirstIntegrals:
         symbols, scope = self.equations.symbols, self.equations.system.scope
         momenta = gradient(self.equations.T, symbols.u)
         drifts = scope.time_derivative(momenta)  # dp/dt = M a + drift, and M a = forcing + J^T lam
-        others, found = (*symbols.q, *symbols.u, *symbols.inputs.values()), []
+        others, found = (*symbols.x, *symbols.inputs.values()), []
         free = [k for k in range(len(symbols.u)) if all(hold_identically([row[k] for row in self.equations.J]))]
         rates = [drifts[k] + self.equations.forcing[k] for k in free]
         for k, (rate, held) in zip(free, _of_time_alone(self.equations, rates, others), strict=True):
@@ -219,7 +219,7 @@ def _work(system: System, load: Load) -> Scalar:
 
 def _is_constant(system: System, *scalars: Scalar) -> bool:
     symbols = system.symbols
-    moving = (symbols.t, *symbols.q, *symbols.u, *symbols.inputs.values())
+    moving = (symbols.t, *symbols.x, *symbols.inputs.values())
     return not any(depends_on(x, moving) for x in scalars)
 
 

@@ -178,7 +178,7 @@ class _Laws:
 
     @property
     def _moving(self) -> tuple[Node, ...]:
-        return (*self.system.symbols.q, *self.system.symbols.u)
+        return self.system.symbols.x
 
     @property
     def _constants(self) -> MotionConstants:
@@ -429,7 +429,7 @@ class ClosedInstant:
 
     @property
     def _moving(self) -> tuple[Node, ...]:
-        return (*self.equations.symbols.q, *self.equations.symbols.u)
+        return self.equations.symbols.x
 
 
 def constant_sums(scalars: Sequence[Scalar], moving: Sequence[Node]) -> list[Node]:

@@ -354,7 +354,7 @@ def value_at_start(integral: Scalar, start: Mapping[Node, Scalar], symbols: Symb
     """
     (integral,) = substituted((integral,), {u: start[u] for u in symbols.u if u in start})
     (value,) = substituted((integral,), start)
-    left = [x.name for x in (*symbols.q, *symbols.u) if depends_on(value, (x,))]
+    left = [x.name for x in symbols.x if depends_on(value, (x,))]
     if left:
         raise DerivationError(
             f"the start has no closed form: {', '.join(left)}", fix="give them as numbers in [coordinates]"

@@ -92,7 +92,7 @@ class Scope:
         symbols: its symbols.
         N, nu: q' = N u + nu; N has nq rows of nu entries.
         names: what each name of an expression stands for: parameters, unknowns, q, u, `theta'`, `theta''`, inputs,
-            t, pi.
+            states z and their rates `i'`, t, pi.
         quaternions: four coordinates each, whose squares add up to 1.
         laws: {psi': law, psi'': law} of driven coordinates whose rates and accelerations are names, for print.
     """
@@ -136,11 +136,17 @@ class Scope:
         )
 
     @cached_property
+    def state_rates(self) -> ScalarRow:
+        """z' of the states of first order, nz, in q, u, a, z, inputs and t."""
+        return tuple(self.names[f"{z.name}'"] for z in self.symbols.z)
+
+    @cached_property
     def flow(self) -> dict[Node, Scalar]:
-        """The seeds of d/dt at a = 0: q -> q', t -> 1, psi' -> psi'' of what has a law."""
+        """The seeds of d/dt at a = 0: q -> q', z -> z', t -> 1, psi' -> psi'' of what has a law."""
         derivatives = {x: tangent((law,), {self.symbols.t: 1})[0] for x, law in self.laws.items()}
         derivatives = {x: self.names.get(f"{x.name}'", rate) for x, rate in derivatives.items()}
-        return {self.symbols.t: 1, **dict(zip(self.symbols.q, self.rates, strict=True)), **derivatives}
+        further = {z: self.names[f"{z.name}'"] for z in self.symbols.z if f"{z.name}'" in self.names}
+        return {self.symbols.t: 1, **dict(zip(self.symbols.q, self.rates, strict=True)), **further, **derivatives}
 
     @cached_property
     def given_kinetic(self) -> tuple[tuple[Node, ...], Scalar]:
@@ -353,7 +359,15 @@ class Scope:
         found = _speeds_by_rates(self.model, names)
         rates = self.with_accelerations(tuple(found.values()))
         found |= {f"{name}'": rate for name, rate in zip(found, rates, strict=True)}
-        return replace(self, names={**names, **found})
+        return replace(self, names={**names, **found}).with_states_named()
+
+    def with_states_named(self) -> Scope:
+        """The scope in which the rates of states of first order stand for what they are in its own speeds."""
+        laws = {f"{name}'": part.rate for name, part in self.model.states.items()}
+        names = dict(self.names)
+        for name in in_order(laws)[0]:
+            names[name] = laws[name].evaluate(names)
+        return replace(self, names=names) if laws else self
 
     @property
     def dependent(self) -> tuple[str, ...]:
@@ -383,8 +397,9 @@ class Scope:
         a = tuple(graph.symbol(name + "''") for name in free)
         inputs = {name: graph.symbol(name) for name in model.inputs}
         unknowns = {name: graph.symbol(name) for name in model.unknowns}
-        symbols = Symbols(graph, t, parameters, inputs, q, u, a, unknowns=unknowns)
-        names: dict[str, Scalar] = {**parameters, **unknowns, **inputs, "t": t, "pi": graph.pi}
+        states = {name: graph.symbol(name) for name in model.states}
+        symbols = Symbols(graph, t, parameters, inputs, q, u, a, unknowns=unknowns, z=tuple(states.values()))
+        names: dict[str, Scalar] = {**parameters, **unknowns, **inputs, **states, "t": t, "pi": graph.pi}
         names |= {name: symbol for name, symbol in zip(model.coordinates, q, strict=True)}
         N: list[tuple[Scalar, ...]] = []
         nu: list[Scalar] = []

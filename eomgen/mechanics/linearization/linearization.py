@@ -155,7 +155,7 @@ def motions_beside(small: SmallMotions, wanted: Sequence[str] = ()) -> Iterator[
         return
     system = reference.system
     first = FirstOrder.of(system)
-    here = {x.name: float(reference.numbers[x]) for x in (*system.symbols.q, *system.symbols.u)}
+    here = {x.name: float(reference.numbers[x]) for x in system.symbols.x}
     for place in reference.family.others[1:]:
         given = here | {x.name: value for x, value in place.items()}
         try:
@@ -434,7 +434,7 @@ def with_followers(first: FirstOrder, reference: ReferenceMotion) -> ReferenceMo
             exact |= dependent_speeds(first, choice, Exact(exact, positive, reference.trial))
     except (DerivationError, NoValue, ZeroDivisionError):  # too large, or a pivot that is 0 as a formula
         return reference
-    found = {x: value for x, value in exact.items() if x in (*symbols.q, *symbols.u) and located.agrees(value, x)}
+    found = {x: value for x, value in exact.items() if x in symbols.x and located.agrees(value, x)}
     return in_closed_form(reference, found)
 
 
@@ -488,7 +488,7 @@ def refuse_corners(
     changes = _changed(first, choice, reference, raw, kept)
     for _ in range(SIDES):
         aside = {
-            x: fifty_digits().number(1) * tolerances.SQUARED_SINE * rng.uniform(-1, 1) for x in (*symbols.q, *symbols.u)
+            x: fifty_digits().number(1) * tolerances.SQUARED_SINE * rng.uniform(-1, 1) for x in symbols.x
         }
         if changes(aside) or changes({x: -d for x, d in aside.items()}):
             rough = [

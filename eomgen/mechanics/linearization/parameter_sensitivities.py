@@ -142,7 +142,7 @@ class ParameterSlopes:
                 "a steady motion without a closed form has no exact slope by a parameter",
                 fix="take a sweep over the parameter",
             )
-        nodes = (*symbols.q, *symbols.u)
+        nodes = symbols.x
         rates = tangent(tuple(reference.exact[x] for x in nodes), self.parameters)
         return dict(zip(nodes, floats_of(evaluate(rates, reference.numbers, fifty_digits())), strict=True))
 

@@ -63,7 +63,7 @@ class ReferenceMotion:
     def is_exact(self) -> bool:
         """True if all coordinates and speeds are known in closed form."""
         symbols = self.system.symbols
-        return all(x in self.exact for x in (*symbols.q, *symbols.u))
+        return all(x in self.exact for x in symbols.x)
 
     @property
     def at_rest(self) -> bool:
@@ -171,7 +171,7 @@ def at_the_start(system: System, *, at_rest: bool, given: Mapping[str, float] | 
     located = Located(
         {
             **{x: float(v) for x, v in numbers.items()},
-            **{x: 0.0 if at_rest and x in symbols.u else state[x.name] for x in (*symbols.q, *symbols.u)},
+            **{x: 0.0 if at_rest and x in symbols.u else state[x.name] for x in symbols.x},
         },
         scope.positive,
     )
@@ -179,7 +179,7 @@ def at_the_start(system: System, *, at_rest: bool, given: Mapping[str, float] | 
     exact |= located.places(substituted(tuple(gaps), exact), sought) if sought else {}
     exact = {x: value for x, value in exact.items() if x is symbols.t or located.agrees(value, x)}
     exact = exact if symbols.parameters.keys() - model.exact_parameters().keys() else _short(exact)
-    for x in (*symbols.q, *symbols.u):
+    for x in symbols.x:
         numbers[x] = _numbers({x: exact[x]}, trial)[x] if x in exact else fifty_digits().number(located.numbers[x])
     return _with_inputs(ReferenceMotion(system, EQUILIBRIUM if at_rest else START, exact, numbers))
 
@@ -209,7 +209,7 @@ def _with_inputs(reference: ReferenceMotion) -> ReferenceMotion:
     refuse_lost({q: reference.numbers[q] for q in system.symbols.q})
     given = {node: system.inputs[name] for name, node in system.symbols.inputs.items()}
     exact = dict(zip(given, substituted(tuple(given.values()), reference.exact), strict=True))
-    exact = {x: value for x, value in exact.items() if not depends_on(value, (*system.symbols.q, *system.symbols.u))}
+    exact = {x: value for x, value in exact.items() if not depends_on(value, system.symbols.x)}
     numbers = dict(reference.numbers)
     for node, value in given.items():
         numbers[node] = evaluate((value,), numbers, fifty_digits())[0]

@@ -80,7 +80,7 @@ def steady_start(first: FirstOrder, reference: ReferenceMotion, wanted: Sequence
 
 def _steady(first: FirstOrder, choice: Choice, state: Mapping[Node, Any], changed: np.ndarray) -> Steady:
     symbols = first.system.symbols
-    values = {x.name: float(state[x]) for x in (*symbols.q, *symbols.u)}
+    values = {x.name: float(state[x]) for x in symbols.x}
     independent = (*(symbols.q[k] for k in choice.places.free), *(symbols.u[k] for k in choice.speeds.free))
     return Steady(
         {name: 0.0 if abs(x) < tolerances.COORDINATE_AT_50 else x for name, x in values.items()},
@@ -416,7 +416,7 @@ class _Writing:
         at = start | dict(zip(found, substituted(tuple(found.values()), start), strict=True))
         whole = {**at, **dict(zip(self._fixed, substituted(tuple(self._fixed.values()), at), strict=True))}
         positive = self.first.system.scope.positive
-        state = {x: simplest(whole[x], Work.VALUE, positive) for x in (*symbols.q, *symbols.u) if x in whole}
+        state = {x: simplest(whole[x], Work.VALUE, positive) for x in symbols.x if x in whole}
         return state if all(self._located.agrees(value, x) for x, value in state.items()) else {}
 
     def _with_others(self, family: Family) -> Family:

@@ -86,7 +86,7 @@ class ExactStart:
         if self.is_drawn:
             return {}
         symbols, values = self.system.symbols, self.begun.values
-        return {symbols.t: 0.0} | {x: values[x.name] for x in (*symbols.q, *symbols.u)}
+        return {symbols.t: 0.0} | {x: values[x.name] for x in symbols.x}
 
     @cached_property
     def exact(self) -> dict[Node, Scalar]:
@@ -115,7 +115,7 @@ class ExactStart:
     @property
     def is_exact(self) -> bool:
         """True if all coordinates and speeds have a closed form."""
-        return all(x in self.exact for x in (*self.system.symbols.q, *self.system.symbols.u))
+        return all(x in self.exact for x in self.system.symbols.x)
 
     @cached_property
     def values(self) -> dict[Node, Scalar]:
@@ -189,7 +189,7 @@ class _Sought:
         """The numbers, by which closed forms are recognised."""
         symbols, known = self.system.symbols, self.system.scope.model.exact_parameters(self.drawn)
         numbers = {node: float(known[name]) for name, node in symbols.parameters.items() if name in known}
-        numbers |= {x: self.begun.values[x.name] for x in (*symbols.q, *symbols.u)} | {symbols.t: 0.0}
+        numbers |= {x: self.begun.values[x.name] for x in symbols.x} | {symbols.t: 0.0}
         return Located(numbers, self.system.scope.positive)
 
     @cached_property
@@ -417,7 +417,7 @@ def _closed_in(system: System, state: State, sought: list[Node]) -> State:
     numbers: dict[Node, float] = {node: float(x) for node, x in system.scope.values_of_parameters(None).items()}
     numbers |= {
         node: value
-        for node, value in zip((*system.symbols.q, *system.symbols.u), Start.of(system).values.values(), strict=True)
+        for node, value in zip(system.symbols.x, Start.of(system).values.values(), strict=True)
     }
     located = Located(numbers, system.scope.positive)
     found = located.places(substituted(system.constraints.gaps, state), sought)

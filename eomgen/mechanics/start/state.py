@@ -121,7 +121,7 @@ class Start:
         refuse_open_rates(system, state)
         state, fork, turned = _along_a_branch(system, state, called)
         names = tuple(dict.fromkeys((*open_gaps, *open_rates, *hit, *turned)))
-        found = {node.name: _rounded(state[node], values[node.name]) for node in (*system.symbols.q, *system.symbols.u)}
+        found = {node.name: _rounded(state[node], values[node.name]) for node in system.symbols.x}
         return Start(found, _changes(system, values, found, called) if names else (), names, fork, hit)
 
 
@@ -238,7 +238,7 @@ def _along_a_branch(system: System, state: State, called: frozenset[str]) -> tup
 
 def _called(system: System, start: Mapping[str, float]) -> frozenset[str]:
     """The coordinates and speeds whose start a person typed, or a caller gave: these are changed last."""
-    names = (node.name for node in (*system.symbols.q, *system.symbols.u))
+    names = (node.name for node in system.symbols.x)
     return frozenset(name for name in names if name in start or system.scope.model.is_typed(name))
 
 
@@ -247,7 +247,7 @@ def _changes(
 ) -> tuple[Change, ...]:
     """Changes between two starts, without those of dependent coordinates."""
     follow = {*system.scope.dependent, *(u.name for u in following_rates(system))}
-    own = [x for x in (*system.symbols.q, *system.symbols.u) if x.name not in follow]
+    own = [x for x in system.symbols.x if x.name not in follow]
     return tuple(
         _change(system.scope.model, x.name, (before[x.name], after[x.name]), x.name in called)
         for x in own
@@ -298,7 +298,7 @@ def _by_rates(system: System, speed: str, rates: Mapping[str, Scalar]) -> Scalar
 
 def _given(system: System, parameters: Mapping[str, Any] | None, start: Mapping[str, float]) -> dict[str, float]:
     """The start values as they are written, and those in their place."""
-    names = [node.name for node in (*system.symbols.q, *system.symbols.u)]
+    names = [node.name for node in system.symbols.x]
     unknown = [name for name in start if name not in names]
     if unknown:
         raise UsageError(f"no coordinate or speed '{unknown[0]}'", fix=f"one of {', '.join(names)}")
@@ -352,7 +352,7 @@ def _numbers(system: System, values: Mapping[str, float], parameters: Mapping[st
     state = {symbols.parameters[name]: fifty_digits().number(value) for name, value in p.items()} | {
         symbols.t: fifty_digits().number(0)
     }
-    state |= {node: fifty_digits().number(values[node.name]) for node in (*symbols.q, *symbols.u)}
+    state |= {node: fifty_digits().number(values[node.name]) for node in symbols.x}
     for name, node in symbols.inputs.items():
         state[node] = evaluate((system.inputs[name],), state, fifty_digits())[0]
     return state

@@ -256,7 +256,7 @@ def _state(system: System, drawn: Numbers) -> State:
     """Every symbol of a system at the start but a, multipliers 0."""
     symbols, values = system.symbols, Start.of(system, drawn).values
     known = {**system.scope.model.exact_parameters(drawn), **values}
-    nodes = {**symbols.parameters, **{x.name: x for x in (*symbols.q, *symbols.u)}}
+    nodes = {**symbols.parameters, **{x.name: x for x in symbols.x}}
     state = {node: fifty_digits().number(float(known[name])) for name, node in nodes.items()}
     state |= {x: fifty_digits().number(0.0) for x in (symbols.t, *symbols.lam)}
     own = evaluate(tuple(system.inputs[name] for name in symbols.inputs), state, fifty_digits())

@@ -27,7 +27,7 @@ from eomgen.mechanics.free_bodies import (
     named_reactions,
 )
 from eomgen.mechanics.kinematics import SystemScene
-from eomgen.model import FUNCTIONS, Couple, PointForce, SpreadLoad, UniformField, ends_requested, nearest
+from eomgen.model import FUNCTIONS, Couple, PointForce, SpreadLoad, UniformField, Unit, ends_requested, nearest
 from eomgen.symbolic.exact import equal_at_random_states, simplest
 from eomgen.symbolic.expression import (
     Call,
@@ -188,8 +188,8 @@ def _equation(structure: Structure, name: str, combination: Mapping[int, Scalar]
 # and nothing else: the loads' works are those of their own points, line loads by the integral of q . v.
 
 
-UNITS = {(1, 1, -2): "N", (2, 1, -2): "N*m", (0, 1, -2): "N/m"}
-"""Units by the exponents of m, kg, s."""
+UNITS = {Unit.parse(unit).dimension: unit for unit in ("N", "N*m", "N/m")}
+"""Units by their dimension."""
 LONGEST_FACTOR = 60  # characters of a factor in a sum that is printed
 
 

@@ -190,7 +190,7 @@ def _seat(catalog: Catalog, leaf: Leaf) -> Iterator[Diagnostic]:
 
 def _statement(catalog: Catalog, leaf: Leaf) -> Iterator[Diagnostic]:
     """Diagnostics of names in braces, in the words of a problem, that have no value."""
-    known = [*catalog.table("parameters"), *catalog.table("coordinates"), *catalog.table("inputs")]
+    known = [name for table in ("parameters", "coordinates", "states", "inputs") for name in catalog.table(table)]
     known += [f"{name}'" for name in catalog.table("coordinates")]
     for each in STATEMENT.finditer(leaf.value):
         name = (each["name"] or "").strip()
@@ -333,12 +333,12 @@ def _misplaced(catalog: Catalog, leaf: Leaf, name: str, column: int, allowed: fr
             f"write {other}" if other else _in_degrees(name, leaf) or nearest(name, allowed) or _declare(catalog, name)
         )
         what = f"unknown name '{name}' in {where}"
-    elif name != base and kind not in ("coordinate", "speed"):
+    elif name != base and kind not in ("coordinate", "speed", "state"):
         what, fix = f"a prime on what does not move: {name} ('{base}' is {article(kind)})", f"write {base}"
     elif name != base and f"{name}" not in catalog.allowed[""]:
-        what, fix = f"'{name}' means nothing: '{base}' is {article(kind)}", "a coordinate has '' and ', a speed '"
+        what, fix = f"'{name}' means nothing: '{base}' is {article(kind)}", "a coordinate has '' and ', a speed and a state '"
     else:
-        primes = {"coordinate": ("coordinate", "rate", "acceleration"), "speed": ("speed", "acceleration")}
+        primes = {"coordinate": ("coordinate", "rate", "acceleration"), "speed": ("speed", "acceleration"), "state": ("state", "rate")}
         kind = primes[kind][len(name) - len(base)] if kind in primes else kind
         what, fix = f"'{name}' ({article(kind)}) cannot stand in {where}", f"only {leaf.rule.scope} can stand here"
         if leaf.path[0] == "constraints" and leaf.path[-1] == "length" and base in catalog.table("coordinates"):
@@ -368,6 +368,11 @@ def _rings(catalog: Catalog) -> Iterator[Diagnostic]:
         trail = " -> ".join([*shown, ring[0]])
         what = f"parameter '{ring[0]}' needs itself: {trail}" if len(ring) == 1 else f"parameters in a ring: {trail}"
         yield Diagnostic(path, what, "give one of them a number")
+    rates = {f"{name}'": part.rate if part else None for name, part in catalog.table("states").items()}
+    for ring in in_order(rates)[1]:
+        what = f"rates of states in a ring: {' -> '.join([*ring[:LONGEST_TRAIL], ring[0]])}"
+        what = f"the rate of state '{ring[0][:-1]}' needs itself" if len(ring) == 1 else what
+        yield Diagnostic(("states", ring[0][:-1], "rate"), what, "write one of them without the rates of the others")
 
 
 # -------- equations -------------------------------------------------------------------------------------------

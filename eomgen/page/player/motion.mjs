@@ -174,7 +174,8 @@ export class Motion {
 
     /** The nearest speeds that agree with the constraints; of each tier no more than what those before it cannot close. */
     _nearestSpeeds(x, given) {
-        const { coordinates, speeds, guesses } = this.told, nq = coordinates.length, n = speeds.length;
+        const { coordinates, guesses } = this.told, nq = coordinates.length;
+        const speeds = this.told.speeds.slice(0, this.told.start.speeds), n = speeds.length;
         const [J, left] = this.start.speedRows(0, x);
         const M = this.of.inertia(0, x);
         const kind = speeds.map(name => this._called(name, given) ? 2 : guesses.includes(name) ? 0 : 1);

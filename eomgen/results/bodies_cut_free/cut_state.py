@@ -59,7 +59,7 @@ class CutState:
     def begun(self) -> dict[Node, float]:
         """Values of t, q, u and the parameters."""
         symbols = self.system.symbols
-        x = dict(zip((*symbols.q, *symbols.u), map(float, self.drawn.x), strict=True))
+        x = dict(zip(symbols.x, map(float, self.drawn.x), strict=True))
         p = dict(zip(symbols.parameters.values(), map(float, self.drawn.p), strict=True))
         return {symbols.t: self.drawn.t, **x, **p}
 
@@ -136,7 +136,7 @@ def cut_state(model: Model, at: WrittenEquation | AtRest | None = None) -> CutSt
     system, missing = moment.phase.system, [name for name in model.parameters if name not in model.exact_parameters()]
     if missing or not moment.numbers:
         raise MissingValues(tuple(missing) or ("the parameters",))
-    x = [float(moment.numbers[node]) for node in (*system.symbols.q, *system.symbols.u)]
+    x = [float(moment.numbers[node]) for node in system.symbols.x]
     values = model.exact_parameters()
     p = np.array([float(values[name]) for name in system.symbols.parameters])
     return CutState(moment.phase, DrawnState(float(moment.numbers[system.symbols.t]), np.array(x), p), when, False)

@@ -299,7 +299,7 @@ class Linearization(Result):
             "assumptions": list(self.assumptions),
             "state": {
                 x.name: _state(reference.exact.get(x), float(reference.numbers[x]), valued=self.valued)
-                for x in (*reference.system.symbols.q, *reference.system.symbols.u)
+                for x in reference.system.symbols.x
             },
             "beside_start": None
             if reference.beside is None or not self.valued

@@ -500,7 +500,7 @@ def reference_step(modes: Modes) -> Step:
     """The state, how it was found, and the family that a steady motion belongs to."""
     small, reference = modes.small, modes.small.reference
     symbols = reference.system.symbols
-    shown = symbols.q if reference.about_equilibrium else (*symbols.q, *symbols.u)
+    shown = symbols.q if reference.about_equilibrium else symbols.x
     rows: list[tuple[Cell, ...]] = []
     for x in shown:
         exact: Cell = reference.exact.get(x, "")

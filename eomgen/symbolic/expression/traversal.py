@@ -115,6 +115,7 @@ class Symbols:
         a: accelerations u', nu, named `theta''` or `w1'`.
         lam: multipliers of the constraint rows, k, named `lam(constraint, row)`, row from 1.
         unknowns: numbers that are requested, by name, in the model's order.
+        z: states of first order, nz, by name, in the model's order.
     """
 
     graph: Graph
@@ -126,3 +127,9 @@ class Symbols:
     a: tuple[Node, ...]
     lam: tuple[Node, ...] = ()
     unknowns: dict[str, Node] = field(default_factory=dict)
+    z: tuple[Node, ...] = ()
+
+    @property
+    def x(self) -> tuple[Node, ...]:
+        """The whole state, x = (q, u, z)."""
+        return self.q + self.u + self.z
