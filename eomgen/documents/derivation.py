@@ -73,7 +73,11 @@ def derivation_of(
     if method == "kinetostatic" and not isinstance(letters, str):
         last = (*last, *along_the_motion(equations, reader, letters))
     last = (*integral_steps(equations, reader, in_time), *last)
-    written = Written((*setting_steps(system), *steps, *result.steps, *states_step(system, reader), *last), result.equations, result.definitions)
+    written = Written(
+        (*setting_steps(system), *steps, *result.steps, *states_step(system, reader), *last),
+        result.equations,
+        result.definitions,
+    )
     graph, taken = equations.symbols.graph, {*system.scope.names, *(symbol.name for symbol, _ in result.definitions)}
     taken |= set() if isinstance(letters, str) else letters.names
     written = with_coefficients_throughout(written, result.coefficients)

@@ -375,7 +375,9 @@ def states_step(system: System, reader: Reader) -> tuple[Step, ...]:
         return ()
     rates: list[Pair] = [(Rate(z), rate) for z, rate in zip(scope.symbols.z, scope.state_rates, strict=True)]
     several = len(rates) > 1
-    words = "The states of first order change as declared:" if several else "The state of first order changes as declared:"
+    words = (
+        "The states of first order change as declared:" if several else "The state of first order changes as declared:"
+    )
     return (Step("states", "States of first order", (prose(words), *page(reader, rates))),)
 
 

@@ -146,7 +146,13 @@ def samples_of(
     return Samples({x: np.array([row[x] for row in rows]) for x in names}, found)
 
 
-UNITS_OF_OTHERS = {"kg": 1.7, "m": 0.83, "s": 1.31}  # the units of somebody who measures otherwise, in ours
+UNITS_OF_OTHERS = {
+    "kg": 1.7,
+    "m": 0.83,
+    "s": 1.31,
+    "A": 1.17,
+    "K": 0.77,
+}  # the units of somebody who measures otherwise, in ours
 
 
 def in_other_units(samples: Samples, dimensions: Mapping[str, Dimension]) -> Samples | None:

@@ -281,7 +281,7 @@ class WrittenNumber:
     exact: str
     half: float
     unit: str = ""
-    dimension: tuple[int, int, int] | None = None
+    dimension: tuple[int, ...] | None = None
 
     @property
     def value(self) -> float:

@@ -199,6 +199,8 @@ def _diagnostic(catalog: Catalog, leaf: Leaf, clash: Clash, names: Names) -> Dia
 
 def _own_text(leaf: Leaf) -> str | None:
     """The unit of a field as its rule, or its part, writes it."""
-    if leaf.path[0] == "outputs" or (leaf.path[0] in ("coordinates", "states") and leaf.path[-1] in ("start", "near", "motion")):
+    if leaf.path[0] == "outputs" or (
+        leaf.path[0] in ("coordinates", "states") and leaf.path[-1] in ("start", "near", "motion")
+    ):
         return None if leaf.part is None or leaf.part.unit is None else str(leaf.part.unit.text)
     return getattr(leaf.rule, "unit", None)

@@ -2,8 +2,8 @@
 
     [a + b]: [a] = [b]      [a b] = [a] [b]      [a^n] = n [a]      sin a, exp a: [a] = 1
 
-A dimension is a product of powers of m, kg, s, A, K and of unknowns; an equation between two is linear in the exponents.
-Angles are numbers. A plain number fits anything: it is an unknown of its own.
+A dimension is a product of powers of m, kg, s, A, K and of unknowns; an equation between two is linear in the
+exponents. Angles are numbers. A plain number fits anything: it is an unknown of its own.
 """
 
 from __future__ import annotations
@@ -103,7 +103,9 @@ KINDS: dict[frozenset[tuple[Any, Any]], str] = {frozenset(powers): kind for powe
 
 def dimension_of_unit(unit: Unit) -> Dimension:
     """Dimension of a declared unit."""
-    return Dimension({base: Fraction(n) for base, n in zip(("m", "kg", "s", "A", "K"), unit.dimension, strict=True) if n})
+    return Dimension(
+        {base: Fraction(n) for base, n in zip(("m", "kg", "s", "A", "K"), unit.dimension, strict=True) if n}
+    )
 
 
 class Inference:

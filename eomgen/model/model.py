@@ -363,7 +363,7 @@ class Model(Numbers, Connections, UnitsOfNames, Part):
         return bool(self.changing)
 
     def _given_at_start(self, name: str) -> list[Expression]:
-        """Expressions of the start of a coordinate, speed or state; for a declared speed without one, those of its rates."""
+        """Expressions of a start; for a declared speed without one, those of its rates."""
         if name in self.coordinates:
             part = self.coordinates[name]
             found = [part.start if part.near is None else None]

@@ -196,7 +196,10 @@ def _table() -> dict[str, Unit]:
         *(unit(n, f, 2, 1, -3, -2) for n, f in (("ohm", 1), ("mohm", "0.001"), ("kohm", 1000), ("Mohm", 10**6))),
         *(unit(n, f, -2, -1, 3, 2) for n, f in (("S", 1), ("mS", "0.001"))),
         *(unit(n, f, 2, 1, -2, -2) for n, f in (("H", 1), ("mH", "0.001"), ("uH", "1e-6"))),
-        *(unit(n, f, -2, -1, 4, 2) for n, f in (("F", 1), ("mF", "0.001"), ("uF", "1e-6"), ("nF", "1e-9"), ("pF", "1e-12"))),
+        *(
+            unit(n, f, -2, -1, 4, 2)
+            for n, f in (("F", 1), ("mF", "0.001"), ("uF", "1e-6"), ("nF", "1e-9"), ("pF", "1e-12"))
+        ),
         *(unit(n, f, 2, 1, -2, -1) for n, f in (("Wb", 1), ("mWb", "0.001"))),
         *(unit(n, f, 0, 1, -2, -1) for n, f in (("T", 1), ("mT", "0.001"))),
         *(unit(n, f, K=1) for n, f in (("K", 1), ("mK", "0.001"))),
@@ -226,7 +229,16 @@ for _alias, _name in _ALIASES:
     UNITS[_alias] = UNITS[_name]
 
 _SPOKEN = {"sec": "s", "second": "s", "meter": "m", "metre": "m", "degree": "deg", "degrees": "deg", "radian": "rad"}
-_SPOKEN |= {"volt": "V", "volts": "V", "ampere": "A", "amps": "A", "amp": "A", "henry": "H", "farad": "F", "weber": "Wb"}
+_SPOKEN |= {
+    "volt": "V",
+    "volts": "V",
+    "ampere": "A",
+    "amps": "A",
+    "amp": "A",
+    "henry": "H",
+    "farad": "F",
+    "weber": "Wb",
+}
 _SPOKEN |= {"tesla": "T", "kelvin": "K", "liter": "l", "litre": "l", "liters": "l", "litres": "l", "lpm": "l/min"}
 _SPOKEN |= {"radians": "rad", "newton": "N", "kilogram": "kg", "hr": "h", "hour": "h", "rps": "rev/s"}
 _PIECE = re.compile(

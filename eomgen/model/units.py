@@ -26,7 +26,7 @@ class UnitsOfNames:
     outputs: Table[Output]
 
     def in_own_unit(self, name: str, value: float, digits: int = 9) -> str:
-        """The value with its unit, where the coordinate or state has one that is not of SI; a number alone elsewhere."""
+        """The value with its unit, where a coordinate or state has one not of SI; a number alone elsewhere."""
         rate = name.endswith("'")
         base = name[:-1] if rate else name
         part = self.coordinates.get(base) or self.states.get(base)

@@ -90,9 +90,7 @@ class PhaseMotion:
             return None
         given = self.values(at)
         found = _held(system, given)
-        if found is None or any(
-            abs(found[x] - given[x]) > tolerances.CARRIED * (1 + abs(given[x])) for x in symbols.x
-        ):
+        if found is None or any(abs(found[x] - given[x]) > tolerances.CARRIED * (1 + abs(given[x])) for x in symbols.x):
             return None
         state = replace(at, x=np.array(floats_of(found[x] for x in symbols.x)))
         a = code(state)[len(symbols.q) : len(symbols.q) + len(symbols.u)]

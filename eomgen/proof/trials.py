@@ -459,7 +459,11 @@ class Trials:
             found = evaluate(scope.state_rates, moving, fifty_digits())
             right = declared_state_rates(self.equations.system, moving)
             size = 1 + max(map(abs, right.values()))
-            apart = (name for x, (name, y) in zip(found, right.items(), strict=True) if abs(x - y) > size * tolerances.ZERO_AT_50)
+            apart = (
+                name
+                for x, (name, y) in zip(found, right.items(), strict=True)
+                if abs(x - y) > size * tolerances.ZERO_AT_50
+            )
             return next((f"the rate of '{name}' is another one" for name in apart), "")
 
         return self._at_states("rates of states are those declared", "50 digits, by their texts", check, moving=True)

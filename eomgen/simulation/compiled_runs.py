@@ -106,7 +106,10 @@ class ManyRuns:
         found = batch.runs(x0, p, requested, threads=self.threads, check=check_patience)
         ends = zip(found.words, found.reached, found.steps, strict=True)
         message = np.array([ended_words(word, float(t), int(n)) for word, t, n in ends], dtype=object)
-        names, alone = self.phase.coordinates + self.phase.shown + self.phase.states, np.flatnonzero(found.words == "stiff")
+        names, alone = (
+            self.phase.coordinates + self.phase.shown + self.phase.states,
+            np.flatnonzero(found.words == "stiff"),
+        )
         return FoundRuns(names, found.x, found.words, message, found.steps, alone)
 
     def in_marches(self, derived: DerivedAt, given: Mapping[str, np.ndarray]) -> FoundRuns | None:
@@ -124,7 +127,10 @@ class ManyRuns:
             return None
         x0, places, known = ManyStarts(phase).at(p, given)
         known &= derived.holds(p, places) & derived.is_regular(p, x0)
-        known &= np.max(np.abs(x0[:, : len(phase.coordinates + phase.speeds)]), axis=1) < tolerances.COMPUTED / np.finfo(float).eps
+        known &= (
+            np.max(np.abs(x0[:, : len(phase.coordinates + phase.speeds)]), axis=1)
+            < tolerances.COMPUTED / np.finfo(float).eps
+        )
         which, found = np.flatnonzero(known), None
         if len(which):
             march = partial(marched, replace(self, parameters=lambda: p[which]), x0[which])

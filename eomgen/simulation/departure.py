@@ -117,9 +117,7 @@ class RestDeparture:
     @property
     def _exact_start(self) -> State:
         """The start in exact numbers where it has no closed form."""
-        return self.exact or {
-            node: Fraction(self.start[node]) for node in self.equations.symbols.x
-        }
+        return self.exact or {node: Fraction(self.start[node]) for node in self.equations.symbols.x}
 
     @property
     def _leading(self) -> int:

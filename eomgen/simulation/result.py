@@ -363,7 +363,7 @@ class Trajectory:
         return columns[name]
 
     def columns(self) -> dict[str, np.ndarray]:
-        """Every column by name: t, coordinates, speeds, states, energy, reactions, outputs ("theta (output)" next to theta)."""
+        """Every column by name: t, what moves, energy, reactions, outputs ("theta (output)" next to theta)."""
         named = {"t": self.t} | dict(zip(self.moving, self.x.T, strict=True))
         named |= ({} if self.energy is None else {"energy": self.energy}) | dict(self.reactions)
         return named | {f"{name}{OUTPUT}" if name in named else name: y for name, y in self.outputs.items()}
@@ -398,7 +398,7 @@ class Trajectory:
             path.write(text.getvalue())
 
     def to_npz(self, path: str | Path) -> None:
-        """numpy's archive: t, x, coordinates, speeds, states, energy, reactions, outputs (n x names) and their names, status.
+        """numpy's archive: t, x, names in x, energy, reactions, outputs (n x names) and their names, status.
 
         Raises:
             WriteFailed: the file cannot be written; the old file is then unchanged.

@@ -518,9 +518,7 @@ class Study:
         (scalar,) = substituted((scalar,), state)
         (scalar,) = substituted((self._known(scalar, quantities),), state)
         symbols = self.system.symbols
-        left = [
-            x.name for x in (symbols.t, *symbols.x, *symbols.a, *symbols.lam) if depends_on(scalar, (x,))
-        ]
+        left = [x.name for x in (symbols.t, *symbols.x, *symbols.a, *symbols.lam) if depends_on(scalar, (x,))]
         if left:
             raise MissingValues(tuple(left))
         return scalar

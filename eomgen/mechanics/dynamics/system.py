@@ -156,6 +156,18 @@ class System:
                 fix = "start near it, or leave out `dependent`: then their rates belong to the state"
                 raise DerivationError(f"{block} {when} ({PLACE})", fix=fix)
 
+    def refuse_states(self, what: str, fix: str) -> None:
+        """Refuse what is not made where states of first order move too.
+
+        Args:
+            what: the refused thing, a plural: "steady motions are not sought".
+        Raises:
+            DerivationError: the model has such states: the first is named.
+        """
+        states = self.symbols.z
+        if states:
+            raise DerivationError(f"{what} where states of first order move", f"states.{states[0].name}", fix)
+
     @property
     def has_degrees_of_freedom(self) -> bool:
         """True if the constraints and drives leave degrees of freedom, and no unknown load acts along them."""
@@ -212,7 +224,25 @@ def system_of(
         DerivationError: what the model says cannot be derived.
     """
     free = System.free_of(model, modes, with_laws=with_laws, begun_as=begun_as)
+    _refuse_loops(free)
     return free.reduced() if free.scope.dependent or model.speeds else free
+
+
+def _refuse_loops(free: System) -> None:
+    """Refuses what pushes by the rate of a state that follows from the accelerations, which follow from the push.
+
+    Raises:
+        DerivationError: the part that holds such a rate is named.
+    """
+    scope = free.scope
+    rates = {f"{z.name}'": rate for z, rate in zip(scope.symbols.z, scope.state_rates, strict=True)}
+    looped = {name for name, rate in rates.items() if depends_on(rate, scope.symbols.a)}
+    for leaf, expression in scope.model.expressions if looped else ():
+        held = sorted(looped & expression.names)
+        if held and leaf.path[0] not in ("states", "outputs", "given", "questions", "linearize"):
+            what = f"an algebraic loop: it pushes by {held[0]}, which follows from the accelerations, and these from it"
+            fix = f"let the rate of '{held[0][:-1]}' hold no acceleration, or let the push depend on the state itself"
+            raise DerivationError(what, ".".join(map(str, leaf.path[:2])), fix)
 
 
 def _carried_places(system: System, scope: Scope) -> dict[Node, Scalar]:

@@ -206,6 +206,7 @@ def static_equations(system: System) -> StaticEquations:
             velocity constraint that no place satisfies at rest.
     """
     _refuse_dry_friction(system)
+    system.refuse_states("equilibria are not sought", "run the motion until it rests: `eomgen simulate`")
     system, held = system.with_drives_held()
     free = system.free or system
     scope = free.scope

@@ -98,10 +98,11 @@ class FirstOrder:
 
     @cached_property
     def derivatives(self) -> Mapping[str, ScalarRows]:
-        """R_q, R_u, S_q, V_q, A_q, A_u, G, W by name."""
+        """R_q, R_u, R_z, S_q, V_q, A_q, A_u, G, W, and Z_q, Z_u, Z_z, Z_a, Z_w of z' by name."""
         symbols = self.system.symbols
         q, u, w = symbols.q, symbols.u, tuple(symbols.inputs.values())
         velocities, accelerations = self.rows
+        rates = self.system.scope.state_rates
         unmoved, still = self._unmoved(), dict.fromkeys(u, 0) if self.at_rest else {}
 
         def by_places(rows: Sequence[Scalar]) -> ScalarRows:
@@ -116,6 +117,12 @@ class FirstOrder:
             "A_u": jacobian(substituted(accelerations, unmoved), u),
             "G": (*jacobian(self.relations, q), *_held(self.system)),
             "W": [[-x for x in row] for row in jacobian(self.residual, w)],
+            "R_z": jacobian(substituted(self.residual, unmoved | still), symbols.z),
+            "Z_q": by_places(rates),
+            "Z_u": jacobian(substituted(rates, unmoved), u),
+            "Z_z": jacobian(substituted(rates, unmoved | still), symbols.z),
+            "Z_a": jacobian(rates, symbols.a),
+            "Z_w": jacobian(rates, w),
         }
 
     def _unmoved(self) -> dict[Node, Scalar]:
@@ -139,31 +146,35 @@ class FirstOrder:
         return FirstOrder(equations, tuple(relations))
 
     def slopes_at(self, state: Mapping[Node, Any], *, single: bool = False) -> tuple[np.ndarray, np.ndarray]:
-        """(d x'/d x, d x'/d w) at a state, x = (q, u); where constraints follow from others their multipliers are the
-        least.
+        """(d x'/d x, d x'/d w) at a state, x = (q, u, z).
+
+        Where constraints follow from others their multipliers are the least.
 
         Args:
-            state: t, parameters, inputs, q and u as floats.
+            state: t, parameters, inputs, q, u and z as floats.
             single: nan where a change opens constraints that follow from others: no acceleration then closes them all.
         """
         e, s = self.equations, self.system.symbols
-        nq, nu, k, w = len(s.q), len(s.u), len(e.J), len(s.inputs)
+        nq, nu, nz, k, w = len(s.q), len(s.u), len(s.z), len(e.J), len(s.inputs)
         here = Doubles(state)
         M, J, N = (here.array(rows, nu) for rows in (e.M, e.J, e.N))
         K = np.block([[M, -J.T], [J, np.zeros((k, k))]])
         right = np.concatenate([here.array((e.forcing,), nu)[0], -here.array((e.gamma,), k)[0]])
         found = _solved(K, right, k)
         here = here.with_values(dict(zip((*s.a, *s.lam), found.tolist(), strict=True)))
-        columns = {"R_q": nq, "R_u": nu, "W": w, "A_q": nq, "A_u": nu, "S_q": nq}
+        columns = {"R_q": nq, "R_u": nu, "R_z": nz, "W": w, "A_q": nq, "A_u": nu, "S_q": nq}
+        columns |= {"Z_q": nq, "Z_u": nu, "Z_z": nz, "Z_a": nu, "Z_w": w}
         at = {name: here.array(self.derivatives[name], n) for name, n in columns.items()}
-        slopes = np.block([[at["R_q"], at["R_u"], -at["W"]], [at["A_q"], at["A_u"], np.zeros((k, w))]])
+        of_rows = [at["A_q"], at["A_u"], np.zeros((k, nz + w))]
+        slopes = np.block([[at["R_q"], at["R_u"], at["R_z"], -at["W"]], of_rows])
         changes = _solved(K, slopes, k)
         below = 0.0 - changes[:nu]
         if single:
             left = abs(K @ changes - slopes).max(axis=0, initial=0.0)
             below[:, left > tolerances.RANK * (1.0 + abs(slopes).max(axis=0, initial=0.0))] = np.nan
-        both = np.vstack([np.hstack([at["S_q"], N, np.zeros((nq, w))]), below])
-        return both[:, : nq + nu], both[:, nq + nu :]
+        further = np.hstack([at["Z_q"], at["Z_u"], at["Z_z"], at["Z_w"]]) + at["Z_a"] @ below
+        both = np.vstack([np.hstack([at["S_q"], N, np.zeros((nq, nz + w))]), below, further])
+        return both[:, : nq + nu + nz], both[:, nq + nu + nz :]
 
 
 def _held(system: System) -> list[list[Scalar]]:
@@ -222,7 +233,8 @@ def _same(A: np.ndarray, B: np.ndarray) -> np.ndarray:
 # -------- slopes ----------------------------------------------------------------------------------------------
 # EquationsOfMotion -> A, B of dx' = A dx + B dw at any state, in numbers.
 #
-# K [da; dlam] = -[R_q dq + R_u du - W dw; A_q dq + A_u du],   K = [M, -J^T; J, 0],   dq' = S_q dq + N du
+# K [da; dlam] = -[R_q dq + R_u du + R_z dz - W dw; A_q dq + A_u du],   K = [M, -J^T; J, 0],   dq' = S_q dq + N du,
+# dz' = Z_q dq + Z_u du + Z_z dz + Z_a da + Z_w dw
 
 
 def _solved(K: np.ndarray, right: np.ndarray, constraints: int) -> np.ndarray:

@@ -138,6 +138,9 @@ class SmallMotions:
                 coordinates do not move by themselves.
         """
         system.scope.model.refuse_motion()
+        system.refuse_states(
+            "small motions are not derived", "take `codegen --jacobian`, or `equations.rhs_jacobian()`"
+        )
         if not system.symbols.u:
             raise DerivationError(
                 "nothing is free to move: there are no small motions",
@@ -487,9 +490,7 @@ def refuse_corners(
     symbols, rng = first.system.symbols, Random(7)
     changes = _changed(first, choice, reference, raw, kept)
     for _ in range(SIDES):
-        aside = {
-            x: fifty_digits().number(1) * tolerances.SQUARED_SINE * rng.uniform(-1, 1) for x in symbols.x
-        }
+        aside = {x: fifty_digits().number(1) * tolerances.SQUARED_SINE * rng.uniform(-1, 1) for x in symbols.x}
         if changes(aside) or changes({x: -d for x, d in aside.items()}):
             rough = [
                 f"the friction of '{name}'"

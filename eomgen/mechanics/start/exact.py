@@ -415,10 +415,7 @@ def values_where_at_rest(system: System, places: Mapping[Node, Scalar] | None = 
 def _closed_in(system: System, state: State, sought: list[Node]) -> State:
     """The dependent coordinates that the constraints place, in closed form."""
     numbers: dict[Node, float] = {node: float(x) for node, x in system.scope.values_of_parameters(None).items()}
-    numbers |= {
-        node: value
-        for node, value in zip(system.symbols.x, Start.of(system).values.values(), strict=True)
-    }
+    numbers |= {node: value for node, value in zip(system.symbols.x, Start.of(system).values.values(), strict=True)}
     located = Located(numbers, system.scope.positive)
     found = located.places(substituted(system.constraints.gaps, state), sought)
     missing = [q.name for q in sought if q not in found]

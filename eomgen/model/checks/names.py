@@ -336,9 +336,16 @@ def _misplaced(catalog: Catalog, leaf: Leaf, name: str, column: int, allowed: fr
     elif name != base and kind not in ("coordinate", "speed", "state"):
         what, fix = f"a prime on what does not move: {name} ('{base}' is {article(kind)})", f"write {base}"
     elif name != base and f"{name}" not in catalog.allowed[""]:
-        what, fix = f"'{name}' means nothing: '{base}' is {article(kind)}", "a coordinate has '' and ', a speed and a state '"
+        what, fix = (
+            f"'{name}' means nothing: '{base}' is {article(kind)}",
+            "a coordinate has '' and ', a speed and a state '",
+        )
     else:
-        primes = {"coordinate": ("coordinate", "rate", "acceleration"), "speed": ("speed", "acceleration"), "state": ("state", "rate")}
+        primes = {
+            "coordinate": ("coordinate", "rate", "acceleration"),
+            "speed": ("speed", "acceleration"),
+            "state": ("state", "rate"),
+        }
         kind = primes[kind][len(name) - len(base)] if kind in primes else kind
         what, fix = f"'{name}' ({article(kind)}) cannot stand in {where}", f"only {leaf.rule.scope} can stand here"
         if leaf.path[0] == "constraints" and leaf.path[-1] == "length" and base in catalog.table("coordinates"):
