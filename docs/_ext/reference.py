@@ -57,6 +57,7 @@ from eomgen.model.parts import (  # noqa: E402
     Piece,
     Question,
     Speed,
+    StateVariable,
     Truss,
     Unknown,
 )
@@ -81,6 +82,7 @@ TABLES: Mapping[str, type[Any]] = {
     "parameters": Parameter,
     "coordinates": Coordinate,
     "speeds": Speed,
+    "states": StateVariable,
     "inputs": Input,
     "bodies": Body,
     "pieces": Piece,

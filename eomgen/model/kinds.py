@@ -70,7 +70,7 @@ WorkingForce = Annotated[Expression, FormulaRule(None, "", MOTION, works_on="coo
 ForceFormula = Annotated[Expression, FormulaRule("N", "", MOTION)]
 Torque = Annotated[Expression, FormulaRule("N*m", "", MOTION)]
 RateLaw = Annotated[Expression, FormulaRule(None, "", RATES)]
-StateRate = Annotated[Expression, FormulaRule(None, "", STATE)]
+RateOfState = Annotated[Expression, FormulaRule(None, "", STATE)]
 VelocityLaw = Annotated[Expression, FormulaRule(None, "", SPEEDS, functions=(*PLACES, *VELOCITIES))]
 Pull = Annotated[Expression, FormulaRule("N", "", MOTION, also=("r", "r'"), also_in="m")]
 TimeLaw = Annotated[Expression, TimeLawRule(None, "", TIME)]

@@ -38,7 +38,7 @@ from eomgen.model.kinds import (
     RateInTime,
     RateLaw,
     SpaceDirection,
-    StateRate,
+    RateOfState,
     SymbolField,
     Text,
     TimeLaw,
@@ -154,7 +154,7 @@ class StateVariable(Part):
 
     title: ClassVar[str] = "state"
     in_unit: ClassVar[tuple[str, ...]] = ("start",)
-    rate: StateRate
+    rate: RateOfState
     start: Formula | None = None
     unit: UnitText | None = None
     about: Text | None = None

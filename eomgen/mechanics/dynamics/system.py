@@ -199,7 +199,9 @@ class System:
         model: Model, modes: ContactModes | None = None, *, with_laws: bool = False, begun_as: System | None = None
     ) -> System:
         """Motion, loads and constraints of a model in which dependent coordinates are as free as others."""
-        motion = Motion.of(Scope.of(model, with_laws=with_laws))
+        scope = Scope.of(model, with_laws=with_laws)
+        _refuse_loops(scope)
+        motion = Motion.of(scope)
         constraints = Constraints.of(motion, modes=modes)
         begun: Mapping[Node, Scalar] = {}
         if begun_as is not None:
@@ -224,17 +226,15 @@ def system_of(
         DerivationError: what the model says cannot be derived.
     """
     free = System.free_of(model, modes, with_laws=with_laws, begun_as=begun_as)
-    _refuse_loops(free)
     return free.reduced() if free.scope.dependent or model.speeds else free
 
 
-def _refuse_loops(free: System) -> None:
+def _refuse_loops(scope: Scope) -> None:
     """Refuses what pushes by the rate of a state that follows from the accelerations, which follow from the push.
 
     Raises:
         DerivationError: the part that holds such a rate is named.
     """
-    scope = free.scope
     rates = {f"{z.name}'": rate for z, rate in zip(scope.symbols.z, scope.state_rates, strict=True)}
     looped = {name for name, rate in rates.items() if depends_on(rate, scope.symbols.a)}
     for leaf, expression in scope.model.expressions if looped else ():

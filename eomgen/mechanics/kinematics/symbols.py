@@ -135,7 +135,7 @@ class Scope:
             for row, bias in zip(self.N, self.nu, strict=True)
         )
 
-    @cached_property
+    @property
     def state_rates(self) -> ScalarRow:
         """z' of the states of first order, nz, in q, u, a, z, inputs and t."""
         return tuple(self.names[f"{z.name}'"] for z in self.symbols.z)
