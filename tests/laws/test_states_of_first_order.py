@@ -1,0 +1,117 @@
+"""States of first order, z' = Z(q, u, a, z, t): motors, controllers, pressures, against closed forms and scipy."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.linalg import expm
+
+import eomgen
+from eomgen.errors import DerivationError, ModelError
+
+MOTOR = """
+eomgen = 1
+space = "plane"
+[parameters]
+J = 0.02
+R = { value = 1.2, unit = "ohm" }
+L = { value = 3, unit = "mH" }
+k = { value = 0.08, unit = "N*m/A" }
+b = { value = 1e-3, unit = "N*m*s" }
+[inputs]
+U = { value = 24, unit = "V" }
+[coordinates]
+theta = { unit = "rad" }
+[states]
+i = { unit = "A", rate = "(U - R*i - k*theta')/L", about = "current of the armature" }
+[bodies.rotor]
+mass = 1
+inertia = "J"
+joint = { kind = "revolute", angle = "theta" }
+[forces.motor]
+kind = "couple"
+body = "rotor"
+couple = "k*i - b*theta'"
+[outputs]
+slope = { value = "i'", unit = "A/s" }
+late = { value = "i", at = "t = 0.05" }
+"""
+
+
+def motor_at(t: float, U: float = 24.0) -> np.ndarray:
+    """(theta, theta', i) from rest: x' = A x + b, by the matrix exponential."""
+    J, R, L, k, b = 0.02, 1.2, 3e-3, 0.08, 1e-3
+    M = np.zeros((4, 4))
+    M[:3] = [[0, 1, 0, 0], [0, -b / J, k / J, 0], [0, -k / L, -R / L, U / L]]
+    return np.asarray(expm(M * t)[:3, 3])
+
+
+def test_a_motor_with_inductance_runs_up_as_its_matrix_exponential_says():
+    """x = (q, u, z); columns, names, drift of nothing else."""
+    run = eomgen.simulate(eomgen.loads(MOTOR), time=0.5, target="numpy", rtol=1e-11, atol=1e-11)
+    assert run.states == ("i",) and run.columns().keys() >= {"theta", "theta'", "i", "slope"}
+    assert run.x[-1] == pytest.approx(motor_at(0.5), rel=1e-8)
+    assert run["slope"][0] == pytest.approx(24 / 3e-3)
+
+
+def test_equations_and_their_json_say_the_states_and_rates():
+    """`states`, `state_rates` {name: text}; `equations.states`, `rhs.states`; dx has z' last."""
+    equations = eomgen.derive(eomgen.loads(MOTOR))
+    entries = equations.entries()
+    assert equations.states == ("i",) and entries["states"] == ["i"]
+    assert entries["state_rates"].keys() == {"i"} and "theta'" in entries["state_rates"]["i"]
+    rhs = equations.rhs("numpy")
+    assert rhs.states == ("i",)
+    assert rhs(0, [0, 1, 2], rhs.p0) == pytest.approx([1, (0.08 * 2 - 1e-3) / 0.02, (24 - 2.4 - 0.08) / 3e-3])
+
+
+def test_the_certificate_compares_each_rate_with_the_text_of_the_file():
+    """By numbers of 50 digits put into the text; the code that is emitted, too."""
+    certificate = eomgen.derive(eomgen.loads(MOTOR)).certify()
+    assert certificate.ok and "rates of states are those declared" in {check.name for check in certificate.checks}
+
+
+@pytest.mark.slow
+def test_an_instant_of_a_state_is_answered():
+    assert eomgen.solve(eomgen.loads(MOTOR))["late"].value == pytest.approx(motor_at(0.05)[2], rel=1e-7)
+
+
+def test_slopes_of_the_right_hand_side_hold_the_states():
+    """A = dx'/dx of x = (q, u, z), B by the inputs."""
+    A, B = eomgen.derive(eomgen.loads(MOTOR)).rhs_jacobian()
+    J, R, L, k, b = 0.02, 1.2, 3e-3, 0.08, 1e-3
+    assert A == pytest.approx(np.array([[0, 1, 0], [0, -b / J, k / J], [0, -k / L, -R / L]]))
+    assert B == pytest.approx(np.array([[0], [0], [1 / L]]))
+
+
+def test_what_pushes_by_a_rate_that_follows_from_the_push_is_refused_by_name():
+    """force <- z' <- a is an algebraic loop; a rate without accelerations is none."""
+    text = MOTOR.replace("k*i - b", "k*(i + L/R*i') - b")
+    assert eomgen.derive(eomgen.loads(text)).certify().ok
+    looped = text.replace("k*theta')/L", "k*theta' - k*(L/R)*theta'')/L")
+    with pytest.raises(DerivationError, match="algebraic loop: it pushes by i'"):
+        eomgen.derive(eomgen.loads(looped))
+
+
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        (('/L", about', '", about'), "is in V"),
+        (("R*i -", "R*z -"), "unknown name 'z'"),
+        (("U - R*i", "U - R*i - L*i'"), "needs itself"),
+        (('i = { unit = "A", rate', 'i = { unit = "A", rote'), "rote"),
+    ],
+)
+def test_mistakes_in_a_state_are_reported(change, words):
+    with pytest.raises(ModelError, match=words):
+        eomgen.loads(MOTOR.replace(*change))
+
+
+def test_units_of_electricity_and_temperature_are_checked():
+    """V = ohm A = Wb/s = J/C, F = A s/V, H = V s/A; W/K."""
+    from eomgen.model.quantities import Unit
+
+    for one, other in (("V", "ohm*A"), ("Wb", "V*s"), ("F", "A*s/V"), ("H", "V*s/A"), ("T", "Wb/m^2"), ("C", "A*s")):
+        assert Unit.parse(one).fits(Unit.parse(other)) and Unit.parse(one).factor == 1
+    assert Unit.parse("N*m/A").fits(Unit.parse("V*s/rad")) and not Unit.parse("W/K").fits(Unit.parse("W"))
+    assert Unit.parse("l/min").to_si(60_000, 1) == 1 and Unit.parse("bar").to_si(1, 1) == 100_000
