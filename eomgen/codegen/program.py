@@ -171,7 +171,7 @@ def right_hand_side(equations: EquationsOfMotion) -> Program:
     Raises:
         DerivationError: the mass matrix is singular at all states.
     """
-    outputs = (*kinematic_rates(equations), *equations.symbols.a, *equations.system.scope.state_rates)
+    outputs = (*kinematic_rates(equations), *equations.symbols.a, *equations.state_rates)
     return program_in_motion(outputs, equations)
 
 

@@ -225,7 +225,7 @@ def _fields(equations: EquationsOfMotion) -> dict[str, Field]:
         "potential_energy": Field((equations.V,), single=True),
         "generalized_forces": Field(equations.Q),
         "equations": Field(_sides(equations), rows=len(equations.symbols.u)),
-        "state_rates": Field(equations.system.scope.state_rates),
+        "state_rates": Field(equations.state_rates),
     }
 
 

@@ -342,7 +342,7 @@ def slope_of(equations: EquationsOfMotion, p: np.ndarray, target: str | None = N
         p: the parameters' values.
         target: the language in which a long function is run.
     """
-    states, further = equations.symbols.x, equations.system.scope.state_rates
+    states, further = equations.symbols.x, equations.state_rates
     n, k = len(equations.M), len(equations.J)
     parts = (
         jacobian(kinematic_rates(equations), states),

@@ -263,7 +263,7 @@ def slopes_of(equations: EquationsOfMotion) -> Matrices:
         return _solved(equations)
     a = equations.accelerations or factor_solution(equations.M, equations.forcing)
     known = dict(zip(equations.symbols.a, a, strict=True))
-    rates = (*kinematic_rates(equations), *a, *substituted(equations.system.scope.state_rates, known))
+    rates = (*kinematic_rates(equations), *a, *substituted(equations.state_rates, known))
     found = [Matrices({name: jacobian(rates, x) for name, x in _columns(equations).items()})]
     if not equations.friction:
         found.append(_written_out(equations, a) if is_short(equations) else _solved(equations))
@@ -292,7 +292,7 @@ def _of_states(
         da: those of the accelerations, one row each.
         known: accelerations that have a formula.
     """
-    rates, a = equations.system.scope.state_rates, equations.symbols.a
+    rates, a = equations.state_rates, equations.symbols.a
     direct = [substituted(row, known) for row in jacobian(rates, states)]
     along = [substituted(row, known) for row in jacobian(rates, a)]
     columns = [tuple(row[j] for row in da) for j in range(len(states))]

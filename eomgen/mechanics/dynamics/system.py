@@ -314,6 +314,11 @@ class EquationsOfMotion:
         return balance, tuple(inner(row, a) + bias for row, bias in zip(self.J, self.gamma, strict=True))
 
     @property
+    def state_rates(self) -> ScalarRow:
+        """z' of the states of first order, nz, in q, u, a, z, inputs and t."""
+        return self.system.scope.state_rates if self.symbols.z else ()
+
+    @property
     def inputs(self) -> dict[str, Scalar]:
         """The model's own expression of each input."""
         return self.system.inputs
