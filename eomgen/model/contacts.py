@@ -25,6 +25,7 @@ class Contact:
         friction: its law, or None.
         surface: it slides on a surface in space, in any direction: what slides has a speed, and no sense.
         round: a bilateral contact on a line in space: N has two components, and no sign.
+        restitution: its coefficient; None: it does not rebound.
     """
 
     name: str
@@ -35,6 +36,7 @@ class Contact:
     pulls: bool = False
     surface: bool = False
     round: bool = False
+    restitution: Expression | None = None
 
     @property
     def words(self) -> str:
@@ -86,6 +88,7 @@ class Connections:
                     pulls=constraint.pulls,
                     surface=rough and not constraint.on_line,
                     round=rough and constraint.on_line,
+                    restitution=getattr(constraint, "restitution", None),
                 )
 
     def _on_path(self, body: str, law: Resistance | None) -> Contact:

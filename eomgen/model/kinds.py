@@ -56,6 +56,7 @@ LinearStiffness = Annotated[Expression, FormulaRule("N/m", "", TIME, usually=RES
 AngularStiffness = Annotated[Expression, FormulaRule("N*m", "", TIME, usually=RESISTS)]
 Pure = Annotated[Expression, FormulaRule("1")]
 Friction = Annotated[Expression, FormulaRule("1", "nonnegative")]
+Restitution = Annotated[Expression, FormulaRule("1", "nonnegative")]
 
 Angle = Annotated[Expression, FormulaRule("rad", "", CONFIGURATION)]
 Displacement = Annotated[Expression, FormulaRule("m", "", CONFIGURATION)]

@@ -412,7 +412,7 @@ def _run_statements(model: Model, run: Trajectory) -> tuple[Statement, ...]:
     heads = {name: f"{name} [{units[name]}]" if name in units else name for name in columns}
     rows = tuple((heads[name], f"{x[0]:.9g}", f"{x[-1]:.9g}") for name, x in columns.items() if len(x))
     grids = (Grid(("", "start", "end"), rows), Grid(("of the run", "", "at"), _rows_of_outputs(model, run)))
-    table = tuple(grid for grid in grids if grid.rows)
+    table = tuple(grid for grid in (*grids, Grid(("impact", "impulses", "loss"), _rows_of_impacts(run))) if grid.rows)
     accuracy = _accuracy(run)
     reported = [] if accuracy is None else [str(accuracy)]
     return (
@@ -420,6 +420,17 @@ def _run_statements(model: Model, run: Trajectory) -> tuple[Statement, ...]:
         *(prose(f"  {line}") for line in lines),
         *table,
     )
+
+
+def _rows_of_impacts(run: Trajectory) -> tuple[tuple[str, str, str], ...]:
+    """A row for each impact: what closed and when, the impulses that are not 0, the loss of kinetic energy."""
+    rows = []
+    for impact in run.impacts[:MOST_REPORTED]:
+        known = {name: x for name, x in impact.impulses.items() if x}
+        values = [f"{name} {f'{x:.6g}' if math.isfinite(x) else 'has no single value'}" for name, x in known.items()]
+        rows.append((f"{impact.contact} at t = {impact.t:.6g} s", ", ".join(values), f"{impact.loss:.6g} J"))
+    more = len(run.impacts) - MOST_REPORTED
+    return (*rows, (f"and {more} more", "", "")) if more > 0 else tuple(rows)
 
 
 def _accuracy(run: Trajectory) -> Accuracy | None:
@@ -477,6 +488,7 @@ def _run_payload(model: Model, run: Trajectory, files: list[str]) -> dict[str, A
         "quantities": _quantities(model, run),
         "assembled": run.assembled,
         "passages": [{"start": first, "end": last} for first, last in run.carried],
+        "impacts": [impact.as_dict() for impact in run.impacts],
         "phases": [{"start": phase.start, "end": phase.end, "ended_by": phase.ended_by} for phase in run.phases],
     }
     return payload if files else payload | {"trajectory": columns}

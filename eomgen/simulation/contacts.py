@@ -301,6 +301,7 @@ class ContactSignals:
         if not self.watch.bounds:
             return np.zeros(0)
         places, rates = np.max(np.abs(x[:n]), initial=1.0), np.max(np.abs(x[n:]), initial=1.0)
+        rebounding = {contact.name for contact in self.watch.contacts if contact.restitution is not None}
         size = {
             "force": tolerances.COMPUTED * self.sizes(t, x)[0],
             "rate": tolerances.COMPUTED * rates,
@@ -309,7 +310,11 @@ class ContactSignals:
         passing = [
             float(stopped_below(self.watch.contact(b.owner))) if b.kind == "stops" else 0.0 for b in self.watch.bounds
         ]
-        return np.maximum([size[bound.unit] for bound in self.watch.bounds], passing) + tolerances.SUMMED
+        found = [
+            tolerances.GAP_CLOSED * places if b.kind == "closes" and b.owner in rebounding else size[b.unit]
+            for b in self.watch.bounds
+        ]
+        return np.maximum(found, passing) + tolerances.SUMMED
 
     def watched(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
         """The bounds along the states, n x k; nan where a reaction has no single value."""

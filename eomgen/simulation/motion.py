@@ -73,7 +73,11 @@ def passed(models: PhaseModels, here: PhaseStart, plan: Plan) -> Iterator[PhaseR
         if failure:
             yield _standstill(phase, here, failure)
             return
-        run = advance(phase, here, plan)
+        run, rests = _until_rest(phase, here, plan)
+        if rests is not None:
+            yield PhaseRun(here, phase, run, None, rests)
+            here = rests
+            continue
         crossing = run.crossing
         if crossing is None or crossing.index >= len(phase.bounds):
             yield PhaseRun(here, phase, run, None, None)
@@ -84,6 +88,18 @@ def passed(models: PhaseModels, here: PhaseStart, plan: Plan) -> Iterator[PhaseR
         after = next_start(models, phase, crossing, ended)
         yield PhaseRun(here, phase, run, phase.bounds[crossing.index], after)
         here = after
+
+
+def _until_rest(phase: PhaseModel, here: PhaseStart, plan: Plan) -> tuple[Run, PhaseStart | None]:
+    """(the phase as it was run, what follows where bounces without end come to rest within it, or None)."""
+    limit = here.t + (here.limit or 0.0)
+    if not here.t < limit < plan.end:
+        return advance(phase, here, plan), None
+    wanted = None if plan.instants is None else plan.instants[plan.instants < limit]
+    run = advance(phase, here, replace(plan, end=limit, instants=wanted))
+    if run.status != "finished":
+        return run, None
+    return run, PhaseStart(limit, phase.values(run.end, run.last), here.configuration)
 
 
 def advance(phase: PhaseModel, here: PhaseStart, plan: Plan) -> Run:

@@ -1,7 +1,7 @@
 """Model, start -> PhaseStart: the beginning of a motion, and its continuation after each event.
 
-An event that closes a contact is an impact without rebound. Then the configuration is sought that agrees with the
-forces (`settling`).
+An event that closes a contact is an impact (`impacts`). Then the configuration is sought that agrees with the forces
+(`settling`).
 """
 
 from __future__ import annotations
@@ -21,8 +21,9 @@ from eomgen.mechanics.start import Start
 from eomgen.model import Contact, Model, Table
 from eomgen.simulation.contacts import Configuration, bounds_of, on_pieces, stopped_below
 from eomgen.simulation.event_location import Crossing
-from eomgen.simulation.phase_model import PhaseModel, Values, smallest_speed
+from eomgen.simulation.phase_model import PhaseModel, Values, scale_of, smallest_speed
 from eomgen.simulation.phase_models import OPEN, PhaseModels
+from eomgen.simulation.result import Impact
 from eomgen.symbolic.numeric import tolerances
 
 
@@ -33,7 +34,8 @@ class PhaseStart:
     Args:
         values: coordinates and rates by name.
         configuration: of the contacts from here on.
-        impact: True if velocities jump here.
+        impact: what happened where velocities jump here; else None.
+        limit: of an impact after which contacts do not rebound any more, how long these would go on [s]; else None.
         failure: the reason why it cannot go on, or "".
         begun: of the first, the values to which the start values were changed.
     """
@@ -41,7 +43,8 @@ class PhaseStart:
     t: float
     values: Values
     configuration: Configuration
-    impact: bool = False
+    impact: Impact | None = None
+    limit: float | None = None
     failure: str = ""
     begun: Start | None = None
 
@@ -123,6 +126,7 @@ def _at_rest_on_surface(
     return {**values, **held.values(t, held.projection.closed(t, held.state(values), 0.0)[0])}
 
 
+LOW = 10 * tolerances.COMPUTED  # [of the coordinates] a flight of what has no restitution
 MOST_STARTS = 16  # that are cached
 
 
@@ -150,8 +154,11 @@ def _closed_or_open(
     def values(away: Sequence[str]) -> tuple[Start, dict[str, float]]:
         return models.of(plain(models.model, pieces, away)).begun(t, parameters, start)
 
+    rebounding = {c.name for c in models.model.contacts if c.restitution is not None}
     try:
-        return values(()), ()
+        closed = values(())
+        if rebounding.isdisjoint(closed[0].hit):
+            return closed, ()
     except DerivationError:
         if not models.ends:
             raise
@@ -172,7 +179,7 @@ def _apart(gap: float, rate: float, values: Values) -> bool:
 
 
 def _length(values: Values) -> float:
-    return 1e2 * tolerances.COMPUTED * max([1.0, *(abs(v) for name, v in values.items() if not name.endswith("'"))])
+    return 1e2 * tolerances.COMPUTED * scale_of(values)
 
 
 def _refuse_overlap(models: PhaseModels, t: float, values: Values) -> None:
@@ -208,26 +215,73 @@ def _decided(
     together: frozenset[str] = frozenset(),
 ) -> PhaseStart:
     """Velocities after an impact where there is one, and the configuration that then holds."""
-    values, apart, hit = _contact(models, t, values, before) if before.open else (values, frozenset(), False)
+
+    def following(resting: frozenset[str] = frozenset()) -> PhaseStart:
+        after, apart, hit = _contact(models, t, values, before, resting)
+        try:
+            found = settled(models, t, after, pieces=pieces, apart=apart, ended=ended, before=before, together=together)
+        except DerivationError as error:  # a contact ends that nothing can leave
+            return PhaseStart(t, after, before, hit, failure=error.what)
+        if found is not None:
+            return PhaseStart(t, after, found, hit)
+        standing = plain(models.model, pieces, tuple(apart))
+        return PhaseStart(t, after, standing, hit, failure=_jammed(standing))
+
     try:
-        found = settled(models, t, values, pieces=pieces, apart=apart, ended=ended, before=before, together=together)
-    except DerivationError as error:  # a contact ends that nothing can leave
-        return PhaseStart(t, values, before, hit, error.what)
-    if found is not None:
-        return PhaseStart(t, values, found, hit)
-    standing = plain(models.model, pieces, tuple(apart))
-    return PhaseStart(t, values, standing, hit, _jammed(standing))
+        found = following()
+        resting: dict[str, float] = {}
+        while lowest := _lowest_flights(models, found, without=resting):
+            resting |= lowest
+            found = replace(following(frozenset(resting)), limit=max(resting.values()) or None)
+    except DerivationError as error:  # no law of impact is satisfied
+        return PhaseStart(t, values, before, failure=error.what)
+    return found
+
+
+def _lowest_flights(models: PhaseModels, here: PhaseStart, without: Mapping[str, float]) -> dict[str, float]:
+    """The contacts that leave an impact no higher than can be told from rounding, and how long they would bounce on.
+
+    The flight is v^2/(2 g_n) high; of all flights 2 v/(g_n (1 - e)) is left. Where something else than its restitution
+    lets it leave (a block that rocks from corner to corner) that is not known: 0.
+    """
+    if here.impact is None or here.failure:
+        return {}
+    e = models.without_contacts.restitutions
+    touched = [name for name in here.impact.impulses if name in models.ends and name in here.configuration.open]
+    leaving = [name for name in touched if name not in without]
+    if not leaving:
+        return {}
+    phase, scale = models.of(here.configuration), scale_of(here.values)
+    seen = phase.signals.look(here.t, phase.state(here.values))
+    found = {}
+    for name in leaving:
+        v, g = (seen.get((name, what), 0.0) for what in ("gap'", "gap''"))
+        lowest = tolerances.LOWEST_FLIGHT if e.get(name) else LOW
+        if v > 0 > g and v * v <= -2 * g * lowest * scale:
+            rebounds = name in here.impact.contact.split(", ") and 0 < e.get(name, 0.0) < 1
+            found[name] = 2 * v / (-g * (1 - e[name])) if rebounds else 0.0
+    return found
 
 
 def _contact(
-    models: PhaseModels, t: float, values: Values, before: Configuration
-) -> tuple[Values, frozenset[str], bool]:
-    """(values after an impact of the closing contacts, the contacts that are apart, whether velocities jumped)."""
-    gaps = models.without_contacts.gaps(t, values)
-    touching = [name for name, (gap, _) in gaps.items() if name not in before.open or gap <= _length(values)]
-    hit = any(gaps[name][1] < -smallest_speed(values) for name in touching if name in before.open)
-    if hit:
-        values = models.without_contacts.after_impact(t, values, touching)
+    models: PhaseModels, t: float, values: Values, before: Configuration, resting: frozenset[str]
+) -> tuple[Values, frozenset[str], Impact | None]:
+    """(values after an impact of the closing contacts, the contacts that are apart, what jumped or None).
+
+    Args:
+        resting: contacts that do not rebound any more.
+    Raises:
+        DerivationError: no impulses satisfy the law of impact.
+    """
+    if not before.open:
+        return values, frozenset(), None
+    gaps, rebounding = models.without_contacts.gaps(t, values), models.without_contacts.restitutions
+    close = {name: _length(values) for name in gaps}
+    close |= dict.fromkeys(rebounding, tolerances.LOWEST_FLIGHT * scale_of(values))
+    touching = [name for name, (gap, _) in gaps.items() if name not in before.open or gap <= close[name]]
+    hit: Impact | None = None
+    if any(gaps[name][1] < -smallest_speed(values) for name in touching if name in before.open):
+        values, hit = models.without_contacts.after_impact(t, values, touching, resting)
         gaps = models.without_contacts.gaps(t, values)
     apart = (name for name, (_, rate) in gaps.items() if name not in touching or rate > smallest_speed(values))
     return values, frozenset(apart), hit

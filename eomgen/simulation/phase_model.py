@@ -322,6 +322,11 @@ def smallest_speed(values: Values) -> float:
     return tolerances.COMPUTED * max([1.0, *(abs(v) for name, v in values.items() if name.endswith("'"))])
 
 
+def scale_of(values: Values) -> float:
+    """Size of the coordinates, at least 1."""
+    return max([1.0, *(abs(v) for name, v in values.items() if not name.endswith("'"))])
+
+
 # -------- slopes ----------------------------------------------------------------------------------------------
 # Equations of motion -> d(x')/dx, exactly: what implicit integrators ask for.
 #

@@ -27,7 +27,7 @@ from eomgen.simulation.phase_change import PhaseStart
 from eomgen.simulation.phase_model import PhaseModel, Values
 from eomgen.simulation.phase_models import PhaseModels
 from eomgen.simulation.reaction_columns import ReactionColumns, begun
-from eomgen.simulation.result import Kept, OnDemand, Phase, Trajectory
+from eomgen.simulation.result import Impact, Kept, OnDemand, Phase, Trajectory
 from eomgen.symbolic.expression import Expression, Scalar
 from eomgen.symbolic.numeric import tolerances
 
@@ -180,6 +180,7 @@ def _joined(models: PhaseModels, runs: Sequence[PhaseRun]) -> Trajectory:
         steps=sum(phase_run.run.steps for phase_run in runs),
         evaluations=sum(phase_run.run.evaluations for phase_run in runs),
         carried=tuple(span for phase_run in runs for span in phase_run.run.carried),
+        impacts=tuple(s.here.impact for s in runs if s.here.impact is not None),
     )
 
 
@@ -281,14 +282,33 @@ def _with_outputs(full: Trajectory, runs: Sequence[PhaseRun], formulas: Mapping[
 
 def phase_text(models: PhaseModels, phase_run: PhaseRun) -> str:
     """Text that says what ended a phase, and when."""
-    after = phase_run.after
+    after, resting = phase_run.after, phase_run.here.impact
+    if phase_run.bound is None and after is not None and resting is not None:
+        names = " and ".join(f"'{name}'" for name in resting.contact.split(", "))
+        return f"{names} bounces without end until t = {after.t:.10g} s, where all flights, 2 v/(g_n (1 - e)), are over"
     if phase_run.bound is None or after is None:
         return phase_run.run.message
     when = f"at t = {after.t:.6g} s"
     if after.failure:
         return f"{after.failure} {when}"
     phrases = changed(models.model, phase_run.here.configuration, after.configuration)
-    return f"{', '.join(phrases) or 'the contacts change and return'} {when}" + after.impact * ", without rebound"
+    if after.impact is None:
+        return f"{', '.join(phrases) or 'the contacts change and return'} {when}"
+    return f"{', '.join(phrases) or _rebounds(models, after.impact)} {when}" + _how_it_ends(models, after)
+
+
+def _rebounds(models: PhaseModels, impact: Impact) -> str:
+    contacts = {contact.name: contact for contact in models.model.contacts}
+    return ", ".join(f"{contacts[name].words} rebounds" for name in impact.contact.split(", "))
+
+
+def _how_it_ends(models: PhaseModels, after: PhaseStart) -> str:
+    """What the phrases of an impact leave out: that nothing rebounds, or when bounces without end would be over."""
+    assert after.impact is not None
+    if after.limit is not None:
+        return ", from where its flights cannot be told from rest"
+    e = models.without_contacts.restitutions
+    return ", without rebound" if not any(e.get(name) for name in after.impact.contact.split(", ")) else ""
 
 
 def _units(columns: Iterable[ReactionColumns]) -> dict[str, str]:

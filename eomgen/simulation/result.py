@@ -126,6 +126,33 @@ class Kept:
     gap_rate: float | None = None
 
 
+@dataclass(frozen=True)
+class Impact:
+    """What happened at one impact of a motion.
+
+    Args:
+        t: the instant [s].
+        contact: what closed; of several at once all names, with commas between.
+        impulses: of contacts by name, of further rows and constraints with more rows than one "NAME component"
+            [N s, of couples N m s]; nan where only their sum has a value.
+        loss: of kinetic energy [J].
+    """
+
+    t: float
+    contact: str
+    impulses: dict[str, float]
+    loss: float
+
+    def __getitem__(self, name: str) -> Any:
+        """A field by its name, as in the entries for machines."""
+        return self.as_dict()[name]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Its fields; an impulse without a single value is None."""
+        impulses = {name: float(x) if np.isfinite(x) else None for name, x in self.impulses.items()}
+        return {"t": self.t, "contact": self.contact, "impulses": impulses, "loss": self.loss}
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Trajectory:
     """A motion. One that ended early holds its results so far and the reason.
@@ -147,6 +174,7 @@ class Trajectory:
         reported: text on those that are missing at every state, with the reason; or "".
         gaps: -> the same of single states, found on demand.
         carried: the start and the end of each crossing of a singular position (a change point, a dead centre).
+        impacts: where velocities jumped: instant, contact, impulses, loss of energy, each an Impact.
         assembled: text on the changes of the start values by which the constraints hold there; or "".
         proof: the run -> its certificate; None where its equations are not known.
         whole: text -> its value over the whole run (a RunValue); None where its equations are not known.
@@ -175,6 +203,7 @@ class Trajectory:
     reported: str = ""
     gaps: Callable[[], str] = field(default=Pickled(""), repr=False)
     carried: tuple[tuple[float, float], ...] = ()
+    impacts: tuple[Impact, ...] = ()
     assembled: str = ""
     proof: Callable[[Trajectory], Any] | None = None
     whole: Callable[[Any], Any] | None = field(default=None, repr=False)

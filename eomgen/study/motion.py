@@ -492,7 +492,8 @@ class MotionFromStart:
         for k, run in enumerate(runs):
             phase = Study(run.phase.system)
             exact = {} if k and _jumps(runs[k - 1].end, run.here.values) else carried(moment, phase)
-            ended_by = phase.difference(condition) if run.bound is None else run.bound.value
+            met = run.bound is None and run is runs[-1]
+            ended_by = phase.difference(condition) if met else None if run.bound is None else run.bound.value
             moment = _end_of(phase, run, ended_by, exact)
         after = runs[-1].after
         if side != "after" or after is None:

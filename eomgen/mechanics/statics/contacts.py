@@ -134,9 +134,11 @@ class _StartNumbers:
         """Contacts that can end and have a positive gap; none where the start leaves all of them closed."""
         if not names:
             return ContactsAtStart()
+        rebounding = {c.name for c in self.model.contacts if c.restitution is not None}
         try:
-            Start.of(system_of(self.model), self.drawn)
-            return ContactsAtStart()
+            if rebounding.isdisjoint(Start.of(system_of(self.model), self.drawn).hit):
+                return ContactsAtStart()
+            return self._by_gaps(names)
         except DerivationError:  # as a start that leaves a contact open is refused
             return self._by_gaps(names)
         except (ModelError, UsageError) as error:
@@ -157,11 +159,16 @@ class _StartNumbers:
             ]
             if lacking:
                 assumptions.append(_closed(name, _lacking(lacking)))
-            elif gap > tolerances.CARRIED or (gap >= -tolerances.CARRIED and rates[name] > tolerances.CARRIED):
+            elif gap > tolerances.CARRIED or (gap >= -tolerances.CARRIED and self._moves(name, rates[name])):
                 modes[name] = OPEN
             elif gap < -tolerances.CARRIED:
                 assumptions.append(_closed(name, f"the start passes through it, by {-gap:.3g} m"))
         return ContactsAtStart(modes, tuple(assumptions))
+
+    def _moves(self, name: str, rate: float) -> bool:
+        """True if a contact that touches opens, or is hit and rebounds."""
+        rebounds = any(c.name == name and c.restitution is not None for c in self.model.contacts)
+        return rate > tolerances.CARRIED or (rebounds and rate < -tolerances.CARRIED)
 
     def leaving(self, touching: Sequence[Contact], opened: ContactModes) -> ContactsAtStart:
         """Touching contacts that would have to pull: they open at once."""

@@ -138,7 +138,13 @@ class Constraint(Part, ABC):
 
     def diagnostics(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
         """Diagnostics of fields that do not fit together; each field alone is checked by its rule."""
-        yield from ()
+        yield from self.never_rebounds(path)
+
+    def never_rebounds(self, path: DocumentPath) -> Iterator[Diagnostic]:
+        """Diagnostics of a restitution of what cannot end, and so never closes again."""
+        if getattr(self, "restitution", None) is not None and not getattr(self, "unilateral", False):
+            what = f"'{path[1]}' has a restitution and cannot end, so that it never closes again"
+            yield Diagnostic((*path, "restitution"), what, "unilateral = true, or leave it out", key=True)
 
     @classmethod
     def works_in(cls, space: str) -> bool:

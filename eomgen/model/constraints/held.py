@@ -14,7 +14,17 @@ from eomgen.model.constraints.rolling import complement, laid_in
 from eomgen.model.constraints.row import ConstraintRow, direction_of, normals_of
 from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.forces.load import LoadContext, PointForce
-from eomgen.model.kinds import BodyName, Direction, Flag, FrictionLaw, GroundPlace, PointName, Points, SpaceDirection
+from eomgen.model.kinds import (
+    BodyName,
+    Direction,
+    Flag,
+    FrictionLaw,
+    GroundPlace,
+    PointName,
+    Points,
+    Restitution,
+    SpaceDirection,
+)
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression import Matrix, Scalar, Vector, over
 
@@ -121,6 +131,7 @@ class Slider(Constraint):
         on: the body whose line it is.
         unilateral: it can only push (in the plane).
         friction: in the contact.
+        restitution: where it closes again it rebounds with this share of its speed, 0 to 1 (None: not at all).
     """
 
     kind: ClassVar[str] = "slider"
@@ -130,9 +141,11 @@ class Slider(Constraint):
     on: BodyName
     unilateral: Flag = False
     friction: FrictionLaw | None = None
+    restitution: Restitution | None = None
 
     def diagnostics(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
         """Diagnostics: the body needs a line, another body than that of the point; in space the slider cannot end."""
+        yield from self.never_rebounds(path)
         if _lacks_line(catalog, self.on):
             what = f"'{path[1]}' slides on the line of body '{self.on}', which has none"
             yield Diagnostic((*path, "on"), what, f'give body \'{self.on}\' its line = ["A", "B"]')
@@ -191,6 +204,7 @@ class Support(Constraint):
         at: a place on the line, or a ground point's name (None: where the point stands).
         unilateral: it can only push.
         friction: in the contact.
+        restitution: where it closes again it rebounds with this share of its speed, 0 to 1 (None: not at all).
     """
 
     kind: ClassVar[str] = "support"
@@ -199,6 +213,7 @@ class Support(Constraint):
     at: GroundPlace | None = None
     unilateral: Flag = False
     friction: FrictionLaw | None = None
+    restitution: Restitution | None = None
 
     def meeting(self) -> Meeting:
         """The point, on its line or plane."""

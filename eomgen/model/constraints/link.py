@@ -13,7 +13,7 @@ from eomgen.model.constraints.base import Constraint, Thread
 from eomgen.model.constraints.row import ConstraintRow
 from eomgen.model.fields import ListRule, NameRule
 from eomgen.model.forces.load import LoadContext, PointForce
-from eomgen.model.kinds import Flag, Length, Text, TwoPoints
+from eomgen.model.kinds import Flag, Length, Restitution, Text, TwoPoints
 from eomgen.symbolic.expression import Call, Fraction, Node, Reference, Scalar, Vector, order, over, sqrt
 
 
@@ -27,6 +27,7 @@ class Link(Constraint):
         points: the two ends.
         length: their distance [m] (None: the one at the start).
         unilateral: a wire, which can only pull.
+        restitution: where it is taut again it rebounds with this share of its speed, 0 to 1 (None: not at all).
     """
 
     kind: ClassVar[str] = "link"
@@ -35,6 +36,7 @@ class Link(Constraint):
     points: TwoPoints
     length: Length | None = None
     unilateral: Flag = False
+    restitution: Restitution | None = None
 
     def thread(self) -> Thread:
         return Thread(self.points, length=self.length)

@@ -24,6 +24,7 @@ from eomgen.model.kinds import (
     Length,
     OwnPlace,
     Radius,
+    Restitution,
     Size,
     SpaceDirection,
 )
@@ -408,6 +409,7 @@ class Rolling(Constraint):
         slip: True leaves the contact row only.
         unilateral: it can only push.
         friction: with slip.
+        restitution: where it closes again it rebounds with this share of its speed, 0 to 1 (None: not at all).
         radius: None: the shape's; of a tyre that of its centre line [m].
         tube: in space, with `axis`: the radius of the tyre's section (None: a thin disc) [m].
         center: the point of the body about which it is round, or a place in its axes, which becomes a point of it when
@@ -425,6 +427,7 @@ class Rolling(Constraint):
     slip: Flag = False
     unilateral: Flag = False
     friction: FrictionLaw | None = None
+    restitution: Restitution | None = None
     radius: Length | None = None
     tube: Radius | None = None
     center: OwnPlace | None = None
@@ -440,6 +443,7 @@ class Rolling(Constraint):
     def diagnostics(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
         """Diagnostics of tracks and sizes that are missing or exclude one another, or that are for another space."""
         alone = self.on is not None and all(getattr(self, track) is None for track in TRACKS)
+        yield from self.never_rebounds(path)
         yield from diagnostics_of_one(catalog, path, self, (*TRACKS, "on") if self.on is None or alone else TRACKS)
         yield from self._wrong_sizes(path, catalog)
         if alone and not is_round(catalog, self.on):

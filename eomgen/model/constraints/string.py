@@ -13,7 +13,7 @@ from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.fields import EitherRule, ListRule, NameRule, TextRule, VectorRule
 from eomgen.model.forces.load import LoadContext
 from eomgen.model.joints.base import Z, unit
-from eomgen.model.kinds import BodyName, Flag, GroundPlace, Radius, SpaceDirection, Turn
+from eomgen.model.kinds import BodyName, Flag, GroundPlace, Radius, Restitution, SpaceDirection, Turn
 from eomgen.model.part import Part, PartRule
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression import Expression, Vector
@@ -58,6 +58,7 @@ class String(Constraint):
         path: points and wraps, in the order of travel.
         strands: directions that stay so, one a strand; None: computed.
         unilateral: it can only pull.
+        restitution: where it is taut again it rebounds with this share of its speed, 0 to 1 (None: not at all).
     """
 
     kind: ClassVar[str] = "string"
@@ -65,6 +66,7 @@ class String(Constraint):
     path: Route
     strands: Strands | None = None
     unilateral: Flag = False
+    restitution: Restitution | None = None
 
     def strand_rows(self) -> tuple[int, ...]:
         """Row, from 1, with the tension of each strand: strands joined by what slips have one row.
@@ -104,6 +106,7 @@ class String(Constraint):
 
     def diagnostics(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
         """Diagnostics of wraps without size or sense, of a string that holds nothing, of directions of strands."""
+        yield from self.never_rebounds(path)
         for k, wrap in enumerate(self.path or ()):
             where = (*path, "path", k)
             if isinstance(wrap, str):

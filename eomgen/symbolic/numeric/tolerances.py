@@ -71,6 +71,7 @@ OPEN_GAP = 1e-6  # of a gap or its rate against its terms: more is not the round
 UNBALANCED = 1e-6  # of the forces: what least squares leave, above which constraints do not carry them
 MASSES_APART = 1e11  # of the least mass: compared with a larger one the least is lost in a difference of doubles
 AT_AN_EDGE = 1e-5  # [1] of what vanishes at the edge of a domain (1 - x under an arccosine): a motion ends there
+LOWEST_FLIGHT = 1e-10  # [of the coordinates, at least 1 m] between two impacts; ten times what an instant is known to
 GAP_CLOSED = 1e-11  # [m or rad] a gap that an iteration in doubles has closed
 SOON = 1e-6  # [s] after the start, when a motion that begins between two pieces is in one
 LARGEST_AT_50 = 1e15  # [SI] a coordinate or speed: beyond it a difference with a step of 1e-15 is lost

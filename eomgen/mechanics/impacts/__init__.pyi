@@ -1,0 +1,10 @@
+"""Door of the folder: what other folders may import from `eomgen.mechanics.impacts`."""
+
+# One contact that touches in an impact: its rows, its restitution
+from eomgen.mechanics.impacts.law import Hit as Hit
+
+# What an impact changes: the speeds after it, its impulses, the kinetic energy lost
+from eomgen.mechanics.impacts.law import Jump as Jump
+
+# The jump of the speeds by the impulses of all contacts that touch
+from eomgen.mechanics.impacts.law import jump as jump

@@ -1,0 +1,185 @@
+"""The impact of a motion: a model without its contacts that can end, their gaps, and what jumps where they close.
+
+    M (u+ - u-) = J^T Lam,   J u+ + sigma = 0 of the constraints,   v+ >= - e v-, 0 <= Lam of the contacts
+
+The laws stand in `mechanics.impacts`; without a coefficient of restitution e a contact that closes does not rebound.
+Contacts that rebound without end come to rest at the limit instant: the k-th flight lasts 2 e^k v/g_n, where g_n does
+not change, and all of them
+
+    t + 2 v/(g_n (1 - e))
+
+A flight lower than can be told from rounding is not followed: from there on the contact is closed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import field
+from typing import Any
+
+import numpy as np
+
+from eomgen.codegen import RightHandSide, compiled, program_of
+from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
+from eomgen.mechanics.constraints import Row, rows_of_constraint
+from eomgen.mechanics.dynamics import System, assembled_by_recursion
+from eomgen.mechanics.impacts import Hit, Jump, jump
+from eomgen.mechanics.kinematics import SystemInertia
+from eomgen.simulation.phase_model import PhaseModel, Values
+from eomgen.simulation.result import Impact
+from eomgen.symbolic.expression import Scalar, jacobian, substituted
+from eomgen.symbolic.numeric import tolerances
+
+
+@dataclass(frozen=True)
+class WithoutContacts:
+    """A model without the contacts that can end.
+
+    Args:
+        system: it; the coordinates are those of every phase.
+        contacts: the names of the constraints taken away.
+        p: the parameters' values.
+        made: objects that were made of it, which do not depend on these.
+    """
+
+    system: System
+    contacts: tuple[str, ...]
+    p: np.ndarray
+    made: dict[str, Any] = field(default_factory=dict, repr=False, compare=False)
+
+    def gaps(self, t: float, values: Values) -> dict[str, tuple[float, float]]:
+        """(gap, its rate) of every contact that can end; positive where it is open, and opening."""
+        found = iter(self._gaps.many(t, self._x(values)[None, :], self.p)[0].tolist())
+        gaps = {}
+        for name, rows in self._rows.items():
+            gap = values.get(PhaseModel.slack_name(name), 0.0) if rows[0].gap is None else next(found)
+            gaps[name] = (gap, next(found))
+        return gaps
+
+    def after_impact(
+        self, t: float, values: Values, touching: Sequence[str], resting: frozenset[str] = frozenset()
+    ) -> tuple[dict[str, float], Impact]:
+        """(the values after an impact of all contacts that touch: rates changed, places as they were; its record).
+
+        Args:
+            resting: contacts that touch and are at rest from here on: they hold.
+        Raises:
+            DerivationError: no impulses satisfy the law.
+        """
+        x, nu = self._x(values), len(self.system.symbols.u)
+        found = self._matrices.many(t, x[None, :], self.p)[0]
+        M, rows = found[: nu * nu].reshape(nu, nu), found[nu * nu :].reshape(-1, nu + 1)
+        k = len(self.system.constraints.closing)
+        of_contact, first = {}, k
+        for name, own in self._rows.items():
+            of_contact[name], first = rows[first : first + len(own)], first + len(own)
+        e = self.restitutions
+        hits = [Hit(name, of_contact[name], e.get(name, 0.0), name in resting) for name in touching]
+        u = x[len(self.system.symbols.q) :][:nu]
+        after = jump(M, rows[:k], hits, u)
+        size = tolerances.COMPUTED * max(1.0, float(np.max(np.abs(u), initial=0.0)))
+        approached = [hit.name for hit in hits if hit.speed(u) < -size]
+        impact = Impact(t, ", ".join(approached), self._named(after), self._lost(t, x, after.u))
+        rates = self._rates.many(t, self._with_speeds(x, after.u)[None, :], self.p)[0]
+        changed = {f"{q.name}'": float(v) for q, v in zip(self.system.symbols.q, rates, strict=True)}
+        speeds = {node.name: float(v) for node, v in zip(self.system.symbols.u, after.u, strict=True)}
+        return {**values, **changed, **speeds}, impact
+
+    @property
+    def restitutions(self) -> dict[str, float]:
+        """The coefficient of restitution of each contact that has one.
+
+        Raises:
+            DerivationError: one is not between 0 and 1.
+        """
+        contacts = {c.name: c.restitution for c in self.system.scope.model.contacts if c.restitution is not None}
+        value = self.system.scope.value
+        function = self._function("restitutions", lambda: tuple(value(e) for e in contacts.values()))
+        found = function.many(0.0, np.zeros((1, len(self.system.symbols.x))), self.p)[0]
+        for name, e in zip(contacts, found.tolist(), strict=True):
+            if not 0 <= e <= 1:
+                what = f"the restitution of '{name}' is {e:.6g}"
+                raise DerivationError(what, f"constraints.{name}", "between 0 (no rebound) and 1 (no loss)")
+        return dict(zip(contacts, found.tolist(), strict=True))
+
+    def _named(self, after: Jump) -> dict[str, float]:
+        """The impulses by name: of a contact's first row its own."""
+        found: dict[str, float] = {}
+        for name, values in after.impulses.items():
+            rows = self._rows[name]
+            found |= {name if k == 0 else f"{name} {rows[k].component}": float(x) for k, x in enumerate(values)}
+        closing = self.system.constraints.closing
+        several = [row.constraint for row in closing]
+        for row, x in zip(closing, after.held, strict=True):
+            alone = several.count(row.constraint) == 1 or not row.component
+            found[row.constraint if alone else f"{row.constraint} {row.component}"] = float(x)
+        return found
+
+    def _lost(self, t: float, x: np.ndarray, u: np.ndarray) -> float:
+        """T before less T after."""
+        T = self._energy.many(t, np.vstack([x, self._with_speeds(x, u)]), self.p)[:, 0]
+        return float(T[0] - T[1])
+
+    def _with_speeds(self, x: np.ndarray, u: np.ndarray) -> np.ndarray:
+        """The state with other speeds."""
+        q = len(self.system.symbols.q)
+        return np.concatenate([x[:q], u, x[q + len(u) :]])
+
+    def _x(self, values: Values) -> np.ndarray:
+        symbols = self.system.symbols
+        return np.array([values.get(node.name, 0.0) for node in symbols.x])
+
+    def _once(self, key: str, make: Callable[[], Any]) -> Any:
+        if key not in self.made:
+            self.made[key] = make()
+        return self.made[key]
+
+    @property
+    def _rows(self) -> dict[str, tuple[Row, ...]]:
+        """The rows of every contact that can end, the one that can end first."""
+        found: dict[str, tuple[Row, ...]] = self._once(
+            "rows", lambda: {name: rows_of_constraint(self.system.motion, name) for name in self.contacts}
+        )
+        return found
+
+    @property
+    def _gaps(self) -> RightHandSide:
+        return self._function("gaps", self._open)
+
+    @property
+    def _energy(self) -> RightHandSide:
+        return self._function("energy", lambda: (SystemInertia(self.system.motion).kinetic_energy,))
+
+    @property
+    def _rates(self) -> RightHandSide:
+        return self._function("rates", lambda: self.system.scope.rates)
+
+    @property
+    def _matrices(self) -> RightHandSide:
+        return self._function("matrices", self._entries)
+
+    def _open(self) -> tuple[Scalar, ...]:
+        requested: list[Scalar] = []
+        for first, *_ in self._rows.values():
+            requested += [first.velocity] if first.gap is None else [first.gap, first.velocity]
+        return tuple(requested)
+
+    def _entries(self) -> tuple[Scalar, ...]:
+        """M, the rows (J, sigma) of the constraints that stay, and those of the contacts."""
+        M = tuple(x for row in assembled_by_recursion(self.system).M for x in row)
+        rows = (*self.system.constraints.closing, *(row for own in self._rows.values() for row in own))
+        return (*M, *self._with_bias([row.velocity for row in rows]))
+
+    def _with_bias(self, velocities: Sequence[Scalar]) -> list[Scalar]:
+        """(J, sigma) of each row, J u + sigma its velocity."""
+        u = self.system.symbols.u
+        J = jacobian(tuple(velocities), u) if velocities else ()
+        sigma = substituted(tuple(velocities), {node: 0 for node in u})
+        return [x for row, bias in zip(J, sigma, strict=True) for x in (*row, bias)]
+
+    def _function(self, key: str, scalars: Callable[[], tuple[Scalar, ...]]) -> RightHandSide:
+        found: RightHandSide = self._once(
+            key, lambda: compiled(program_of(scalars(), self.system.symbols, inputs=self.system.inputs), "numpy")
+        )
+        return found
