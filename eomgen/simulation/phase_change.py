@@ -21,7 +21,7 @@ from eomgen.mechanics.start import Start
 from eomgen.model import Contact, Model, Table
 from eomgen.simulation.contacts import Configuration, bounds_of, on_pieces, stopped_below
 from eomgen.simulation.event_location import Crossing
-from eomgen.simulation.phase_model import PhaseModel, Values, scale_of, smallest_speed
+from eomgen.simulation.phase_model import PhaseModel, Values, size_of_places, smallest_speed
 from eomgen.simulation.phase_models import OPEN, PhaseModels
 from eomgen.simulation.result import Impact
 from eomgen.symbolic.numeric import tolerances
@@ -179,7 +179,7 @@ def _apart(gap: float, rate: float, values: Values) -> bool:
 
 
 def _length(values: Values) -> float:
-    return 1e2 * tolerances.COMPUTED * scale_of(values)
+    return 1e2 * tolerances.COMPUTED * size_of_places(values)
 
 
 def _refuse_overlap(models: PhaseModels, t: float, values: Values) -> None:
@@ -251,7 +251,7 @@ def _lowest_flights(models: PhaseModels, here: PhaseStart, without: Mapping[str,
     leaving = [name for name in touched if name not in without]
     if not leaving:
         return {}
-    phase, scale = models.of(here.configuration), scale_of(here.values)
+    phase, scale = models.of(here.configuration), size_of_places(here.values)
     seen = phase.signals.look(here.t, phase.state(here.values))
     found = {}
     for name in leaving:
@@ -277,7 +277,7 @@ def _contact(
         return values, frozenset(), None
     gaps, rebounding = models.without_contacts.gaps(t, values), models.without_contacts.restitutions
     close = {name: _length(values) for name in gaps}
-    close |= dict.fromkeys(rebounding, tolerances.LOWEST_FLIGHT * scale_of(values))
+    close |= dict.fromkeys(rebounding, tolerances.LOWEST_FLIGHT * size_of_places(values))
     touching = [name for name, (gap, _) in gaps.items() if name not in before.open or gap <= close[name]]
     hit: Impact | None = None
     if any(gaps[name][1] < -smallest_speed(values) for name in touching if name in before.open):

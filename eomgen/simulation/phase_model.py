@@ -322,7 +322,7 @@ def smallest_speed(values: Values) -> float:
     return tolerances.COMPUTED * max([1.0, *(abs(v) for name, v in values.items() if name.endswith("'"))])
 
 
-def scale_of(values: Values) -> float:
+def size_of_places(values: Values) -> float:
     """Size of the coordinates, at least 1."""
     return max([1.0, *(abs(v) for name, v in values.items() if not name.endswith("'"))])
 

@@ -303,7 +303,7 @@ def _rebounds(models: PhaseModels, impact: Impact) -> str:
 
 
 def _how_it_ends(models: PhaseModels, after: PhaseStart) -> str:
-    """What the phrases of an impact leave out: that nothing rebounds, or when bounces without end would be over."""
+    """Text that the phrases of an impact leave out: that nothing rebounds, or when bounces without end would be over."""
     assert after.impact is not None
     if after.limit is not None:
         return ", from where its flights cannot be told from rest"

@@ -128,7 +128,7 @@ class Kept:
 
 @dataclass(frozen=True)
 class Impact:
-    """What happened at one impact of a motion.
+    """One impact of a motion.
 
     Args:
         t: the instant [s].

@@ -50,7 +50,7 @@ class Hit:
 
 @dataclass(frozen=True)
 class Jump:
-    """What an impact changes.
+    """Speeds after an impact, and its impulses.
 
     Args:
         u: the speeds after it.
@@ -206,7 +206,7 @@ def complementary(A: np.ndarray, q: np.ndarray) -> np.ndarray | None:
 
 
 def lemke(G: np.ndarray, q: np.ndarray) -> np.ndarray | None:
-    """z >= 0, w = G z + q >= 0, z^T w = 0 by Lemke's method, ties by lexicographic order; None: it ends on a ray.
+    """z >= 0, w = G z + q >= 0, z^T w = 0 by Lemke's method, equal ratios by lexicographic order; None: it ends on a ray.
 
     Source: Cottle, Pang & Stone, The Linear Complementarity Problem (1992), algorithm 4.4.5.
     """
