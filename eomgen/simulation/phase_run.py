@@ -303,7 +303,7 @@ def _rebounds(models: PhaseModels, impact: Impact) -> str:
 
 
 def _how_it_ends(models: PhaseModels, after: PhaseStart) -> str:
-    """Text that the phrases of an impact leave out: that nothing rebounds, or when bounces without end would be over."""
+    """Text on an impact beside its phrases: that nothing rebounds, or that flights are too low."""
     assert after.impact is not None
     if after.limit is not None:
         return ", from where its flights cannot be told from rest"

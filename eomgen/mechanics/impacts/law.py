@@ -206,7 +206,7 @@ def complementary(A: np.ndarray, q: np.ndarray) -> np.ndarray | None:
 
 
 def lemke(G: np.ndarray, q: np.ndarray) -> np.ndarray | None:
-    """z >= 0, w = G z + q >= 0, z^T w = 0 by Lemke's method, equal ratios by lexicographic order; None: it ends on a ray.
+    """z >= 0, w = G z + q >= 0, z^T w = 0 by Lemke's method, equal ratios lexicographically; None: it ends on a ray.
 
     Source: Cottle, Pang & Stone, The Linear Complementarity Problem (1992), algorithm 4.4.5.
     """
