@@ -14,6 +14,7 @@ from eomgen.cli_common import (
     deliver,
     deliver_several,
     delivery_of,
+    put,
     reading,
     requested_document,
     write_requested,
@@ -133,9 +134,16 @@ def export_command(model: str, wants_json: bool, output: str, strict: bool, **op
 @JSON
 @OUTPUT
 @FORMAT
+@click.option("--expanded", is_flag=True, help="Print the file as it is read: [repeat] and [parts] written out.")
 @with_values
 def check_command(
-    models: tuple[str, ...], wants_json: bool, output: str | None, format_: str | None, strict: bool, **options: Any
+    models: tuple[str, ...],
+    wants_json: bool,
+    output: str | None,
+    format_: str | None,
+    strict: bool,
+    expanded: bool,
+    **options: Any,
 ) -> int:
     """Validate models; count their degrees of freedom.
 
@@ -144,6 +152,15 @@ def check_command(
     """
     from eomgen.results import check_document
 
+    if expanded:
+        if len(models) > 1 or wants_json or format_ is not None:
+            raise click.UsageError("--expanded prints one model file: name one, without --json and --format")
+        from eomgen.robots import expanded_text
+        from eomgen.verbs import typed
+
+        with reading(models[0]) as source:
+            put(expanded_text(typed(source.model, options)[0].model, source.data), output)
+        return 0
     if len(models) == 1:
         options |= {"wants_json": wants_json, "output": output, "format_": format_}
         return write_requested(check_document, model=models[0], strict=strict, **options)

@@ -7,16 +7,32 @@ import sys
 
 def chain(n: int) -> str:
     """The model file of n rods hinged end to start, the first one to the ground; q1 from the downward vertical."""
-    lines = ["eomgen = 1", f"name = 'Chain of {n} rods'", "space = 'plane'", "", "[parameters]", "g = 9.81"]
-    for i in range(1, n + 1):
-        lines += [f"m{i} = 1.0", f"l{i} = 0.5"]
-    lines += ["", "[coordinates]", *(f"q{i} = 0.1" for i in range(1, n + 1))]
-    for i in range(1, n + 1):
-        at = 'at = [0, 0], angle = "q1 - pi/2"' if i == 1 else f'on = "rod{i - 1}.end", angle = "q{i}"'
-        lines += ["", f"[bodies.rod{i}]", f'shape = {{ kind = "rod", mass = "m{i}", length = "l{i}" }}']
-        lines += [f'joint = {{ kind = "revolute", {at} }}']
-    lines += ["", "[forces.weight]", 'kind = "gravity"', 'acceleration = [0, "-g"]']
-    return "\n".join(lines) + "\n"
+    return f"""\
+eomgen = 1
+name = 'Chain of {n} rods'
+space = 'plane'
+forces.weight = {{ kind = "gravity", acceleration = [0, "-g"] }}
+
+[repeat]
+i = {n}
+k = [2, {n}]
+
+[parameters]
+g = 9.81
+"m{{i}}" = 1.0
+"l{{i}}" = 0.5
+
+[coordinates]
+"q{{i}}" = 0.1
+
+[bodies.rod1]
+shape = {{ kind = "rod", mass = "m1", length = "l1" }}
+joint = {{ kind = "revolute", at = [0, 0], angle = "q1 - pi/2" }}
+
+[bodies."rod{{k}}"]
+shape = {{ kind = "rod", mass = "m{{k}}", length = "l{{k}}" }}
+joint = {{ kind = "revolute", on = "rod{{k-1}}.end", angle = "q{{k}}" }}
+"""
 
 
 if __name__ == "__main__":

@@ -21,6 +21,7 @@ from eomgen.model import constraints, forces, joints, outputs, shapes  # noqa: E
 from eomgen.model.constraints.rolling import Circle, Track  # noqa: E402
 from eomgen.model.constraints.string import Wrap  # noqa: E402
 from eomgen.model.diagnostics import article  # noqa: E402
+from eomgen.model.expansion import PartsRule, RepetitionRule  # noqa: E402
 from eomgen.model.fields import (  # noqa: E402
     PARAMETERS,
     AxialRule,
@@ -120,6 +121,16 @@ def prose(cls: type[Any]) -> str:
 def value_of(rule: Any) -> str:
     """What may stand in a field."""
     raise TypeError(f"nobody says what {type(rule).__name__} takes")
+
+
+@value_of.register
+def _(rule: RepetitionRule) -> str:
+    return 'INDEX = 20 (from 1), [first, last], or "n" (an integer parameter)'
+
+
+@value_of.register
+def _(rule: PartsRule) -> str:
+    return "NAME = { file, on, at, turned, set }"
 
 
 @value_of.register

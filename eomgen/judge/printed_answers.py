@@ -377,7 +377,7 @@ def _greatest(forces: SectionForces) -> list[Scalar]:
         found += [piece.value("bending_moment", x) for x in (piece.start, piece.end)]
     kept: list[Scalar] = []
     for x in map(sizes.shortest, found):
-        larger, smaller = False, []
+        larger, smaller = False, list[Scalar]()
         for other in kept:
             with suppress(DerivationError):
                 more = sizes.sign(x * x - other * other)

@@ -74,6 +74,7 @@ from eomgen.model.diagnostics import whereabouts as whereabouts
 
 # A law of the state: an expression with coordinates, rates or speeds in it; None for everything else
 from eomgen.model.driven import law_of as law_of
+from eomgen.model.expansion import tables_read as tables_read
 
 # Parts of the words of a problem that are no words: $formula$, {name}
 from eomgen.model.fields import STATEMENT as STATEMENT

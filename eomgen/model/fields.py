@@ -42,6 +42,19 @@ class Leaf:
     part: Any = None
 
 
+class Alternatives(list[Any]):
+    """References of which the first that is declared is meant where one is expected; elsewhere they are a list."""
+
+    def __init__(self, items: Iterable[Any], chosen: Any = None) -> None:
+        super().__init__(items)
+        self.chosen = chosen
+
+
+def _as_one(raw: Any) -> Any:
+    """The reference that is meant where one is expected."""
+    return raw.chosen if isinstance(raw, Alternatives) else raw
+
+
 class WholeRule:
     """A rule whose value has no parts of its own."""
 
@@ -234,6 +247,7 @@ class VectorRule:
     downward: bool = False
 
     def read(self, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> Any:
+        raw = _as_one(raw) if self.point or self.own_point else raw
         if (self.point or self.own_point) and isinstance(raw, str) and not isinstance(raw, Decimal):
             return str(raw)
         if not isinstance(raw, (list, tuple)):
@@ -297,6 +311,7 @@ class NameRule(WholeRule):
     of: str
 
     def read(self, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> str | None:
+        raw = _as_one(raw)
         if isinstance(raw, str) and not isinstance(raw, Decimal) and raw:
             return str(raw)
         fix = 'give it a name in [points], like P = [0, 3], and write "P"' if isinstance(raw, list) else ""
@@ -558,6 +573,7 @@ class EitherRule:
     other: Any
 
     def _rule(self, value: Any) -> Any:
+        value = _as_one(value) if isinstance(self.text, NameRule) else value
         return self.text if isinstance(value, str) and not isinstance(value, Decimal) else self.other
 
     def read(self, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> Any:

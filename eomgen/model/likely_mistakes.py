@@ -238,7 +238,7 @@ def _unused(catalog: Catalog) -> Iterator[Diagnostic]:
     for table, what in (("parameters", "parameter"), ("points", "point")):
         for name in catalog.table(table):
             seated = table == "points" and catalog.table(table)[name] in seats
-            if not seated and not named.get(name, set()) - {(table, name)}:
+            if not seated and name not in catalog.model.counts and not named.get(name, set()) - {(table, name)}:
                 yield Diagnostic(
                     (table, name), f"nothing uses the {what} '{name}'", "use it, or leave it out", key=True
                 )

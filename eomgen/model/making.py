@@ -291,7 +291,22 @@ Made = TypeVar("Made", bound=Part)
 
 def draft_of(cls: Any, raw: Mapping[str, Any], title: str, found: list[Diagnostic]) -> Any:
     """A model from the tables of a file, unchecked; what could not be read is None and has a diagnostic."""
-    return read_part(cls, {"name": title, **raw}, (), found, known=("eomgen",))
+    draft = read_part(cls, {"name": title, **raw}, (), found, known=("eomgen",))
+    return draft.altered(bodies=_seated(draft))
+
+
+def _seated(model: Any) -> Table[Any]:
+    """The bodies of a draft, those that sit on a point of the ground (`on = "O"`) by `at`."""
+    points: Mapping[str, Any] = model.points or {}
+    bodies: Mapping[str, Any] = model.bodies or {}  # one that could not be read is None
+    found = {}
+    for name, body in bodies.items():
+        joint = None if body is None else body.joint
+        on = None if joint is None or joint.at is not None else joint.on
+        found[name] = body
+        if body is not None and joint is not None and on in points:
+            found[name] = body.altered(joint=joint.altered(on=None, at=on))
+    return Table(found)
 
 
 def diagnostics_of(model: Any, found: list[Diagnostic]) -> list[Diagnostic]:
@@ -312,6 +327,7 @@ def finish(model: Any) -> None:
         raw = getattr(model, slot.name)
         if raw is not slot.default:
             object.__setattr__(model, slot.name, slot.rule.read(raw, (slot.key,), found))
+    object.__setattr__(model, "bodies", _seated(model))
     found += diagnostics_of(model, found)
     if found:
         raise ModelError(tuple(Problem(".".join(map(str, f.path)), f.what, fix=f.fix) for f in found))

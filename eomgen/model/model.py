@@ -15,6 +15,7 @@ from eomgen.model.contacts import Connections
 from eomgen.model.declared_speeds import begun_speeds
 from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.dimensions import Inferred, inferred, inferred_units
+from eomgen.model.expansion import PartsRule, Repetition, RepetitionRule
 from eomgen.model.fields import (
     Leaf,
     ListRule,
@@ -79,6 +80,8 @@ class Model(Numbers, Connections, UnitsOfNames, Part):
         text: the words of the problem, one paragraph or several, for sheets.
         language: of what is printed about it: "en", "de", "fr", "es".
         questions: what a sheet asks, in words.
+        repeat: indices; what has `{i}` in its name is made for each i, up to a number or an integer parameter.
+        parts: things from other files, `{ file, on, at, turned, set }` each, under names that begin with its name.
         parameters: constants.
         coordinates: what moves.
         speeds: generalized speeds that are not rates.
@@ -105,6 +108,8 @@ class Model(Numbers, Connections, UnitsOfNames, Part):
     source: Text | None = None
     text: Paragraphs | None = None
     language: Text | None = None
+    repeat: Annotated[Repetition, RepetitionRule()] | None = None
+    parts: Annotated[Any, PartsRule()] | None = None
     parameters: Annotated[Table[Parameter], _table(Parameter, "parameter")] = Table()
     coordinates: Annotated[Table[Coordinate], _table(Coordinate, "coordinate")] = Table()
     speeds: Annotated[Table[Speed], _table(Speed, "speed")] = Table()
@@ -164,6 +169,11 @@ class Model(Numbers, Connections, UnitsOfNames, Part):
             ModelError: one of them is wrong.
         """
         return replace(self, outputs=Table(outputs), text=None, questions=None)
+
+    @property
+    def counts(self) -> tuple[str, ...]:
+        """Integer parameters by which things of the model are counted: they are set, not varied."""
+        return () if self.repeat is None else self.repeat.counts
 
     @property
     def warnings(self) -> tuple[Diagnostic, ...]:

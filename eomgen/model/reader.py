@@ -1,17 +1,22 @@
 """Text of a model file -> Model, or every problem at once with its place in the text."""
 
+from __future__ import annotations
+
 import codecs
 import os
 import re
-import tomllib
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path as FilePath
 from typing import Any
 
 from eomgen.errors import ModelError, Problem, UsageError
 from eomgen.files import read, read_stdin
-from eomgen.model.diagnostics import TABLES, Decimal, Diagnostic, shown
+from eomgen.frozen import dataclass
+from eomgen.model.diagnostics import TABLES, Diagnostic, shown
+from eomgen.model.expansion import REPEAT, Repetition, beside_file, is_repeated, repetition_of, tables_of
+from eomgen.model.inserted_parts import PARTS, Expanded, ModelFile, Refused
 from eomgen.model.making import MOST_DIAGNOSTICS, diagnostics_of, draft_of, resolved
 from eomgen.model.model import Model
 from eomgen.model.positions import DocumentPath, Index, Span, index_of
@@ -89,21 +94,23 @@ def located(problem: Problem, data: bytes, name: str, *, by_name: bool = False) 
     path = tuple(problem.where.split("."))
     if path[0] not in TABLES and (problem.where or not by_name):
         return problem
-    index = index_of(_text(data, name))
-    path = path if problem.where else _named(problem.what, index)
+    files = _Files.of(data, name)
+    path = path if problem.where else _named(problem.what, files)
     if not path:
         return problem
-    key = path if path in index.keys else path[:2]
-    return _problem(Diagnostic(path, problem.what, problem.fix), index.nearest(key, key=True), index, name)
+    key = path if files.has(path) else path[:2]
+    number, found = files.as_written(Diagnostic(path, problem.what, problem.fix))
+    index, where = files.indices[number], files.as_written(Diagnostic(key, ""))[1].path
+    return _problem(found, index.nearest(where, key=True), index, files.names[number])
 
 
 _QUOTED = re.compile(r"'([^\W\d]\w*)'*'")
 
 
-def _named(what: str, index: Index) -> tuple[str, ...]:
+def _named(what: str, files: _Files) -> tuple[str, ...]:
     """The path of the first thing that a message names in quotes; () where there is none, or are several so called."""
     for name in _QUOTED.findall(what):
-        found = [(table, name) for table in TABLES if (table, name) in index.keys]
+        found = [(table, name) for table in TABLES if files.has((table, name))]
         if found:
             return found[0] if len(found) == 1 else ()
     return ()
@@ -111,8 +118,70 @@ def _named(what: str, index: Index) -> tuple[str, ...]:
 
 def warned(model: Model, data: bytes, name: str) -> tuple[Problem, ...]:
     """The warnings of a model, each at its place in the text that the model was read from."""
-    index = index_of(_text(data, name))
-    return _problems(list(model.warnings), index, name)
+    return _Files.of(data, name).problems(list(model.warnings))
+
+
+@dataclass(frozen=True)
+class _Files:
+    """The texts of a model: its own, and those of its parts.
+
+    Args:
+        names: of the files.
+        indices: of their texts.
+        made: the tables that they stand for; None where nothing repeats.
+    """
+
+    names: tuple[str, ...]
+    indices: tuple[Index, ...]
+    made: Expanded | None = None
+
+    @staticmethod
+    def of(data: bytes, name: str) -> _Files:
+        text = _text(data, name)
+        index, made = index_of(text), None
+        if (REPEAT,) in index.values or (PARTS,) in index.values:
+            with suppress(Refused, ValueError, RecursionError):
+                made = _expanded(text, name, tables_of(text))
+        return _Files((name,), (index,)) if made is None else _Files._with_parts(made)
+
+    @staticmethod
+    def _with_parts(made: Expanded) -> _Files:
+        names, texts = ([getattr(source, key) for source in made.sources] for key in ("name", "text"))
+        return _Files(tuple(names), tuple(map(index_of, texts)), made)
+
+    def has(self, path: DocumentPath) -> bool:
+        """True if something is written at a path."""
+        return path in self.indices[0].keys or (self.made is not None and path in self.made.places)
+
+    def as_written(self, found: Diagnostic) -> tuple[int, Diagnostic]:
+        return (0, found) if self.made is None else self.made.as_written(found)
+
+    def problems(self, found: list[Diagnostic]) -> tuple[Problem, ...]:
+        """Each diagnostic at its place, in the order of the files."""
+        if self.made is None:
+            return _problems(found, self.indices[0], self.names[0])
+        by_file: dict[int, list[Diagnostic]] = {}
+        first: dict[tuple[int, DocumentPath], str] = {}
+        for each in found:
+            number, told = self.made.as_written(each)
+            where = self.made.origin(each.path).where
+            if first.setdefault((number, told.path), where) == where:  # of what repeats one is told
+                by_file.setdefault(number, []).append(told)
+        return tuple(x for k, each in sorted(by_file.items()) for x in _problems(each, self.indices[k], self.names[k]))
+
+
+def _expanded(text: str, name: str, raw: dict[str, Any]) -> Expanded:
+    """The tables that those of a text stand for."""
+
+    def draft(tables: Mapping[str, Any], found: list[Diagnostic]) -> Any:
+        return draft_of(Model, tables, "part", found)
+
+    def read_part(path: str, beside: str) -> ModelFile:
+        other = beside_file(path, beside)
+        content = _text(read(other, LARGEST), other)
+        return ModelFile(other, content, _table(content, index_of(content), other)[0])
+
+    return repetition_of(ModelFile(name, text, raw), draft, read_part, {})
 
 
 def _loads(data: bytes, name: str, title: str) -> Model:
@@ -122,12 +191,27 @@ def _loads(data: bytes, name: str, title: str) -> Model:
         deep = Diagnostic((), "a key with too many pieces", "a model needs at most bodies.arm.joint")
         raise ModelError((_problem(deep, index.deep, index, name),))
     raw, twice = _table(text, index, name)
-    found = _version(raw)
+    found, files = _version(raw), _Files((name,), (index,))
+    if is_repeated(raw):
+        try:
+            files = _Files._with_parts(_expanded(text, name, raw))
+        except Refused as error:
+            source = error.source or ModelFile(name, text, raw)
+            raise ModelError((*twice, *_problems([error.found], index_of(source.text), source.name))) from error
+        raw = _repeated(files.made, title)
     draft: Model = draft_of(Model, raw, title, found)
     found += diagnostics_of(draft, found)
     if found or twice:
-        raise ModelError((*twice, *_problems(found, index, name)))
+        raise ModelError((*twice, *files.problems(found)))
     return resolved(draft)
+
+
+def _repeated(made: Expanded | None, title: str) -> dict[str, Any]:
+    """The tables that are made, with what is needed to make them again."""
+    assert made is not None
+    own, *parts = made.sources
+    texts = tuple({source.name: source.text for source in parts}.items())
+    return {**made.tables, REPEAT: Repetition(own.text, own.name, title, made.counts, texts)}
 
 
 def _text(data: bytes, name: str) -> str:
@@ -146,7 +230,7 @@ def _text(data: bytes, name: str) -> str:
 def _table(text: str, index: Index, name: str) -> tuple[dict[str, Any], list[Problem]]:
     """The values of a text, and its keys that are there twice (of which the first one counts)."""
     try:
-        return tomllib.loads(text, parse_float=_decimal), []
+        return tables_of(text), []
     except (ValueError, RecursionError) as error:
         failure = error
     repeated = index.twice[:MOST_DIAGNOSTICS]
@@ -154,7 +238,7 @@ def _table(text: str, index: Index, name: str) -> tuple[dict[str, Any], list[Pro
     if not twice:
         raise ModelError((_not_toml(failure, index, name),)) from failure
     try:
-        return tomllib.loads(_without(text, [s for _, _, s in repeated if s]), parse_float=_decimal), twice
+        return tables_of(_without(text, [s for _, _, s in repeated if s])), twice
     except (ValueError, RecursionError):
         raise ModelError(tuple(twice)) from failure
 
@@ -170,10 +254,6 @@ def _without(text: str, spans: list[Span]) -> str:
 def _again(path: DocumentPath, index: Index) -> Diagnostic:
     line = index.line_and_column(index.keys[path].start)[0]
     return Diagnostic(path, f"'{path[-1]}' is given twice", f"first given in line {line}")
-
-
-def _decimal(word: str) -> Decimal:
-    return Decimal(word.replace("_", "").lstrip("+"))
 
 
 def _not_toml(error: Exception, index: Index, name: str) -> Problem:

@@ -20,6 +20,7 @@ from eomgen.errors import ExpressionError, ModelError, UsageError
 from eomgen.frozen import dataclass
 from eomgen.model.diagnostics import Diagnostic, nearest
 from eomgen.model.driven import law_of, with_feedback
+from eomgen.model.expansion import counted_anew
 from eomgen.model.fields import EVERY, AtRest, Table, WrittenEquation, is_mixed
 from eomgen.model.model import Model
 from eomgen.model.parts import Output
@@ -90,6 +91,7 @@ def with_values(
     if not parameters and not start:
         return Valued(model)
     changed, settled = {}, []
+    model = _with_counts(model, parameters or {}, options[0])
     typing = Typing(model, declared)
     for name, typed in (parameters or {}).items():
         if name not in model.parameters:
@@ -134,6 +136,26 @@ def with_values(
     numbers = {**valued.exact_parameters(), "pi": math.pi}
     starts = {each.name: each.value.value_at(numbers) for each in settled if each.name in (start or {})}
     return Valued(valued, taken, Table({name: float(x) for name, x in starts.items() if x is not None}))
+
+
+def _with_counts(model: Model, parameters: Values, option: str) -> Model:
+    """The model made again, where parameters by which its things are counted have other values."""
+    counts: dict[str, int] = {}
+    for name in model.counts:
+        if name in parameters:
+            value = _settled(Typing(model, False), name, parameters[name], option).value
+            number = value.value_at({}) if value.is_plain else None
+            if number is None or number != int(number) or number < 0:
+                what = f"{option} {name}={shown(parameters[name])}: '{name}' counts things of the model"
+                raise UsageError(what, fix=f"give a whole number: {name}=5")
+            counts[name] = int(number)
+    if not counts:
+        return model
+    try:
+        made: Model = counted_anew(model, counts)
+    except ModelError as error:
+        raise UsageError(f"{option}: {error.problems[0].what}", fix=error.problems[0].fix) from error
+    return made
 
 
 def _warn_of_turns(name: str, typed: Typed, found: Settled) -> None:
@@ -390,6 +412,8 @@ def refuse_what_is_not_set(model: Model, name: str, *, starts: bool) -> None:
     if name not in known:
         what = f"no parameter '{name}'" if not starts else f"no parameter, coordinate, rate or speed '{name}'"
         raise UsageError(what, fix=nearest(name, known) or LIKE)
+    if name in model.counts:
+        raise UsageError(f"'{name}' counts things of the model: it has one value", fix=f"set it: {name}=5")
 
 
 def range_of(model: Model, text: str, *, starts: bool = False, declared: bool = True) -> Range:

@@ -24,5 +24,8 @@ from eomgen.robots.tables import LeftOut as LeftOut
 # Legal names, each given once, like those that the file uses
 from eomgen.robots.tables import LegalNames as LegalNames
 
+# The file of a model as it is read: what repeats, and the parts of other files, written out
+from eomgen.robots.tables import expanded_text as expanded_text
+
 # Data of a remark written by an import
 from eomgen.robots.tables import remarked as remarked

@@ -13,7 +13,7 @@ from typing import Any
 
 from eomgen.errors import HIDDEN, visible
 from eomgen.frozen import dataclass
-from eomgen.model import rotation_of
+from eomgen.model import Model, rotation_of, tables_read
 from eomgen.resources import check_patience
 from eomgen.symbolic.expression import Fraction, Matrix, Vector
 from eomgen.symbolic.numeric import fifty_digits, tolerances
@@ -417,12 +417,21 @@ def toml_text(tables: Mapping[str, Any], before: Sequence[str] = (), after: Sequ
     for name, table in tables.items():
         if not isinstance(table, Mapping):
             continue
-        if name in SHORT:
+        if name in SHORT or not all(isinstance(part, Mapping) for part in table.values()):
             lines += ["", f"[{_key(name)}]", *(f"{_key(key)} = {_entry(value)}" for key, value in table.items())]
             continue
         for key, part in table.items():
             lines += ["", f"[{_key(name)}.{_key(key)}]", *(f"{_key(k)} = {_value(v)}" for k, v in part.items())]
     return "\n".join([*lines, *([""] if after else []), *_remarks(after), ""])
+
+
+def expanded_text(model: Model, data: bytes) -> str:
+    """The file of a model as it is read: what repeats, and the parts of other files, written out.
+
+    Args:
+        data: the file.
+    """
+    return data.decode("utf-8-sig") if model.repeat is None else toml_text(tables_read(model))
 
 
 def _remarks(remarks: Sequence[str]) -> list[str]:

@@ -265,7 +265,11 @@ def sensitivity(
     """
     model = model_to_study(model, parameters, start)
     asking = _Asking(model)
-    names = (to,) if isinstance(to, str) else tuple(to) or tuple(model.parameters)
+    names = (
+        (to,)
+        if isinstance(to, str)
+        else tuple(to) or tuple(name for name in model.parameters if name not in model.counts)
+    )
     wanted = (of,) if isinstance(of, str) else tuple(of)
     asking.refuse_unknown(names)
     if time is not None:
@@ -323,6 +327,8 @@ class _Asking:
         symbols = self.phase.system.symbols
         known = (*self.model.parameters, *(x.name for x in symbols.x))
         for name in names:
+            if name in self.model.counts:
+                raise UsageError(f"'{name}' counts things of the model: nothing is differentiated by it", fix="set it")
             if name not in known:
                 raise UsageError(f"no parameter, coordinate or speed '{name}'", fix=f"one of {', '.join(known)}")
 

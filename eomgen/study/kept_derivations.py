@@ -96,7 +96,8 @@ def cached_derivation(data: bytes, name: str, model: Model, requested: Mapping[s
     package = _package()
     if package is None:
         return None
-    parts = (package, repr(name).encode(), repr(sorted(requested.items())).encode(), data)
+    others = () if model.repeat is None else model.repeat.parts  # files of parts
+    parts = (package, repr(name).encode(), repr(sorted(requested.items())).encode(), data, repr(others).encode())
     content = b"".join(len(part).to_bytes(8, "big") + part for part in parts)
     return CachedDerivation(sha256(content).hexdigest(), model)
 
