@@ -252,7 +252,7 @@ DOORS = {  # rooms that are imported through what their stub names, and how many
     "results": 15,
     "study": 16,
     "proof": 66,
-    "model": 129,
+    "model": 130,
     "mechanics.kinematics": 21,
     "mechanics.constraints": 21,
     "mechanics.dynamics": 25,
