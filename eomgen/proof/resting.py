@@ -23,7 +23,7 @@ from eomgen.proof.certificate import certify
 from eomgen.proof.check import Certificate, Check, attempted, checked, first_wrong, unchecked
 from eomgen.proof.degrees_of_freedom import Nearby
 from eomgen.proof.free_bodies import demand_of
-from eomgen.proof.in_numbers import STEP, with_inputs
+from eomgen.proof.in_numbers import STEP, declared_state_rates, with_inputs
 from eomgen.symbolic.expression import Node, jacobian
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 
@@ -108,7 +108,7 @@ def _pushed(place: Equilibrium) -> str:
     known = {**dict.fromkeys(still, digits.number(0)), **known}
     held = {q: value for q, value in statics.given.items() if q in symbols.q}
     known |= dict(zip(held, evaluate(tuple(held.values()), known, digits), strict=True))
-    stays = [q for q in symbols.q if q not in statics.q and (q in place.exact or q in place.numbers)]
+    stays = [q for q in symbols.places if q not in statics.q and (q in place.exact or q in place.numbers)]
     known |= _places(place, (*statics.unknowns, *stays), known)
     most = max(_usual(statics, known), default=0)
     left = dict(zip((u.name for u in symbols.u), demand_of(free, with_inputs(free, known)).forces, strict=True))
@@ -180,7 +180,7 @@ class _Proof:
         symbols = system.symbols
         known: dict[Node, Any] = system.scope.values_of_parameters(Random(3))
         known |= {x: digits.number(0) for x in (symbols.t, *symbols.u)}
-        known |= _places(self.place, symbols.q, known)
+        known |= _places(self.place, symbols.places, known)
         return with_inputs(system, known)
 
     @cached_property
@@ -213,6 +213,9 @@ class _Proof:
         rows = [row for row in system.constraints.closing if row.gap is None]
         names = (*(f"{q.name}'" for q in system.symbols.q), *(f"'{row.constraint}'" for row in rows))
         rates = evaluate((*system.scope.rates, *(row.velocity for row in rows)), self.numbers, fifty_digits())
+        for name, (x, usual) in self._state_rates().items():
+            if abs(x) > tolerances.COMPUTED * usual + tolerances.ZERO_AT_50:
+                return f"{name}' is {float(x):.3g} at rest"
         size = 1 + max((abs(self.numbers[q]) for q in system.symbols.q), default=0)
         moving = (
             f"{name} is {float(x):.3g} at rest"
@@ -220,6 +223,13 @@ class _Proof:
             if abs(x) > tolerances.COMPUTED * size
         )
         return next(moving, "")
+
+    def _state_rates(self) -> dict[str, tuple[Any, Any]]:
+        """{state: (z' by the file's own text, what it changes by where the states are a part larger)}, nothing moving."""
+        system, numbers = self.first.system, self.numbers | dict.fromkeys(self.first.system.symbols.a, 0)
+        moved = {x: numbers[x] + STEP * max(1, abs(numbers[x])) for x in system.symbols.places}
+        here, there = (declared_state_rates(system, state) for state in (numbers, numbers | moved))
+        return {name: (x, abs(there[name] - x) / STEP) for name, x in here.items()}
 
     def wrong(self) -> str:
         """Message if the system accelerates at the equilibrium, compared with that after a displacement; ""."""

@@ -36,11 +36,12 @@ from eomgen.symbolic.numeric import NoValue, Work, evaluate, fifty_digits, toler
 # -------- static equations ------------------------------------------------------------------------------------
 # System -> Static equations: the expressions that vanish at an equilibrium.
 #
-#     Q + J^T lam = 0,   phi = 0,   sigma = 0        at u = 0, t = 0, driven coordinates held where they start
+#     Q + J^T lam = 0,   phi = 0,   sigma = 0,   z' = 0        at u = 0, t = 0, driven coordinates held where they start
 #
 # over all coordinates that are not driven, dependent ones among them. sigma is what a velocity row J u + sigma = 0
 # demands at rest: of z' = r - x that x = r. Relations between positions that a velocity row gives by itself (a wheel
-# that rolls) are taken from the start. The norm of a quaternion, e . e = 1, is one more constraint.
+# that rolls) are taken from the start. States of first order are sought with the coordinates: the rate of each stands
+# where the force along it would, for neither need be solvable without the other. The norm of a quaternion, e . e = 1, is one more constraint.
 
 
 MOST_TERMS = 1000  # of all forces together, when they are written out: they share their parts as they come
@@ -53,9 +54,9 @@ class StaticEquations:
     Args:
         system: of the model, its drives held.
         held: the driven coordinates that the model moves, and that stand still here.
-        q: the coordinates sought.
+        q: the coordinates sought, and the states of first order after them.
         given: what stands in place of speeds, time, inputs and driven coordinates.
-        Q: generalized force along each of q, and `unbalanced` the part of it that has no potential.
+        Q: generalized force along each of q, of a state its rate; `unbalanced` the part that has no potential.
         J: of each constraint row its coefficients, lam its multiplier.
         phi: relations between the coordinates.
         sigma: what remains of the velocity rows at zero speed; it vanishes at rest.
@@ -134,11 +135,7 @@ class StaticEquations:
         for q, force in zip(self.q, self.forces, strict=True):
             if q in dropped and not is_zero(force) and not vanishes(force):
                 if not depends_on(force, self.unknowns):
-                    raise DerivationError(
-                        f"nothing balances the force along '{q.name}': there is no equilibrium",
-                        f"coordinates.{q.name}",
-                        "hold it by a spring or a constraint, or take away what pushes it",
-                    )
+                    raise self._unbalanced_along(q)
                 beside.append(force)
         kept = [k for k, q in enumerate(self.q) if q not in dropped]
 
@@ -152,6 +149,16 @@ class StaticEquations:
             unbalanced=of(self.unbalanced),
             J=tuple(map(of, self.J)),
             beside=(*self.beside, *beside),
+        )
+
+    def _unbalanced_along(self, q: Node) -> DerivationError:
+        if q in self.system.symbols.z:
+            what = f"the state '{q.name}' changes wherever the system stands: there is no equilibrium"
+            return DerivationError(what, f"states.{q.name}", "let its rate vanish somewhere, or run the motion")
+        return DerivationError(
+            f"nothing balances the force along '{q.name}': there is no equilibrium",
+            f"coordinates.{q.name}",
+            "hold it by a spring or a constraint, or take away what pushes it",
         )
 
     def holding(self, at: State) -> StaticEquations:
@@ -206,20 +213,21 @@ def static_equations(system: System) -> StaticEquations:
             velocity constraint that no place satisfies at rest.
     """
     _refuse_dry_friction(system)
-    system.refuse_states("equilibria are not sought", "run the motion until it rests: `eomgen simulate`")
     system, held = system.with_drives_held()
     free = system.free or system
     scope = free.scope
     driven = [q for q in scope.symbols.q if scope.model.coordinates[q.name].driven]
     q = tuple(x for x in scope.symbols.q if x not in driven)
     given = _given(free, driven)
-    rows = [readable_all(substituted(row, given), Work.FORMULA) for row in free.constraints.J]
+    z = free.symbols.z
+    rows = [(*readable_all(substituted(row, given), Work.FORMULA), *(0 for _ in z)) for row in free.constraints.J]
     standing = standing_system(free)  # a damper at a seat that moves with t has no force at rest
     loads = (standing.free or standing).loads
     forces = loads.generalized_forces
     _refuse_signs_of_rates(forces, free)
-    Q = _at_rest(forces, given, free)
-    unbalanced = substituted(loads.powered_forces, given)
+    rates = _rates_at_rest(standing.free or standing, given)
+    Q = (*_at_rest(forces, given, free), *rates)
+    unbalanced = (*substituted(loads.powered_forces, given), *rates)
     phi = _relations(system, given, q)
     sigma = _left_at_rest(free, given, q)
     Q, unbalanced, phi, sigma = (
@@ -230,7 +238,7 @@ def static_equations(system: System) -> StaticEquations:
     statics = StaticEquations(
         system,
         held,
-        q,
+        (*q, *z),
         given,
         Q,
         unbalanced,
@@ -324,6 +332,22 @@ def _at_rest(forces: ScalarRow, given: State, free: System) -> ScalarRow:
         what = f"{free.loads.acting(has_none) or 'a force'} has no value where nothing moves: {error.what}"
         fix = "write it so that it has one at rest: w/sqrt(w^2 + eps^2) in place of w/abs(w)"
         raise DerivationError(what, fix=fix) from error
+
+
+def _rates_at_rest(standing: System, given: State) -> ScalarRow:
+    """z' of the states of first order with all speeds and accelerations 0.
+
+    Raises:
+        DerivationError: one divides by a speed: it is named.
+    """
+    found: list[Scalar] = []
+    for z, rate in zip(standing.symbols.z, standing.scope.state_rates, strict=True):
+        try:
+            found += substituted((rate,), given)
+        except DerivationError as error:
+            what = f"the rate of '{z.name}' has no value where nothing moves: {error.what}"
+            raise DerivationError(what, f"states.{z.name}", "write it so that it has one at rest") from error
+    return tuple(found)
 
 
 def _refuse_signs_of_rates(Q: ScalarRow, free: System) -> None:

@@ -145,7 +145,7 @@ class _Search:
         statics, scope = self.statics, self.statics.system.scope
         state = self.floats | dict(zip(statics.q, map(float, self.guess), strict=True))
         unit = unit_of_length(statics.system.motion, state)
-        plain = self._angles.union(*scope.quaternions)
+        plain = self._angles.union(*scope.quaternions, statics.system.symbols.z)
         return {} if unit == 1 else {q: unit for q in statics.q if q not in plain}
 
     @cached_property
@@ -186,7 +186,7 @@ class _Search:
         """
         statics = self.statics
         n, relations = len(statics.q), (*statics.phi, *statics.sigma)
-        if statics.beside:
+        if statics.beside or statics.system.symbols.z:  # no range is known in which a state has all its roots
             return None
         if not statics.J:
             return statics.Q if not relations else None
@@ -542,19 +542,22 @@ class Guess:
     def exact(self, q: Node) -> Scalar:
         """First value of a coordinate as a scalar of the parameters."""
         scope = self.system.scope
-        near = scope.model.coordinates[q.name].near
         if q.name in self.requested:
             return Fraction(self.requested[q.name])
+        near = None if q.name in scope.model.states else scope.model.coordinates[q.name].near
         return scope.start_value(q) if near is None else scope.value(near)
 
     @cached_property
     def _numbers(self) -> dict[str, float]:
         model = self.system.scope.model
-        unknown = [name for name in self.requested if name not in model.coordinates]
+        known = (*model.coordinates, *model.states)
+        unknown = [name for name in self.requested if name not in known]
         if unknown:
-            raise UsageError(f"no coordinate '{unknown[0]}'", fix=f"one of {', '.join(model.coordinates)}")
+            raise UsageError(f"no coordinate '{unknown[0]}'", fix=f"one of {', '.join(known)}")
         trial = {name: float(self.values[x]) for name, x in self.system.symbols.parameters.items()}
-        return {**model.start_values(trial)[0], **model.first_guesses(trial), **self._near, **self.requested}
+        begun, others = model.start_values(trial)
+        states = {name: others[name] for name in model.states}
+        return {**begun, **states, **model.first_guesses(trial), **self._near, **self.requested}
 
     @property
     def _near(self) -> dict[str, float]:

@@ -46,8 +46,8 @@ def state_at_rest(place: Equilibrium) -> dict[Node, Scalar]:
     symbols = system.symbols
     still: dict[Node, Scalar] = {symbols.t: 0, **dict.fromkeys((*symbols.u, *symbols.a), 0)}
     inputs = {x: place.statics.given[x] for x in symbols.inputs.values()}
-    at = place.exact if place.is_exact else {q: Fraction(place.numbers[q]) for q in symbols.q}
-    return {**still, **inputs, **{q: at[q] for q in symbols.q}}
+    at = place.exact if place.is_exact else {q: Fraction(place.numbers[q]) for q in symbols.places}
+    return {**still, **inputs, **{q: at[q] for q in symbols.places}}
 
 
 def reactions_at(place: Equilibrium) -> tuple[Reactions, tuple[RestingReaction, ...]]:

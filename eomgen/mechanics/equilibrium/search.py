@@ -55,15 +55,15 @@ class Equilibrium:
 
     @property
     def is_exact(self) -> bool:
-        """True if every coordinate is known in closed form."""
-        return all(q in self.exact for q in self.statics.system.symbols.q)
+        """True if every coordinate and state is known in closed form."""
+        return all(q in self.exact for q in self.statics.system.symbols.places)
 
     @cached_property
     def pulling(self) -> tuple[str, ...]:
         """The one-sided constraints that would have to pull there; () where that is not known."""
         system = self.statics.system
         state: dict[Node, Scalar] = {system.symbols.t: 0, **dict.fromkeys((*system.symbols.u, *system.symbols.a), 0)}
-        state |= self.exact if self.is_exact else {q: Fraction(self.numbers[q]) for q in system.symbols.q}
+        state |= self.exact if self.is_exact else {q: Fraction(self.numbers[q]) for q in system.symbols.places}
         values = {node: float(x) for node, x in system.scope.values_of_parameters(None).items()}
         return pulling_contacts(system, state, values)
 
@@ -245,7 +245,7 @@ class _Search:
     def _fixed(self) -> dict[Node, Scalar]:
         """Driven coordinates, those that nothing holds and those chosen, where they start; these at their guess."""
         scope, free = self.system.scope, {*self._held_by_forces.q} - {*self._chosen.coordinates}
-        fixed = scope.with_unit_quaternions(scope.start_values(q for q in scope.symbols.q if q not in free))
+        fixed = scope.with_unit_quaternions(scope.start_values(q for q in scope.symbols.places if q not in free))
         return fixed | {q: self._guess.exact(q) for q in self._chosen.coordinates}
 
     @cached_property

@@ -69,6 +69,8 @@ def stability_of(
         chosen: where constraints restrict velocities and no positions, the coordinates that they leave open: the
             neighbouring equilibria are at d with K d = 0.
     """
+    if statics.system.symbols.z:
+        return Stability("undecided", "states of first order move with it; `linearize` decides on the stability")
     if not statics.q:
         return Stability(INDIFFERENT, "nothing can move" if not statics.system.symbols.u else "no force holds it")
     try:

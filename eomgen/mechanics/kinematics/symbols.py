@@ -193,11 +193,13 @@ class Scope:
     # -- at the start ------------------------------------------------------------------------------
 
     def start_values(self, among: Iterable[Node] | None = None) -> dict[Node, Scalar]:
-        """Start values of coordinates, as expressions of the parameters; of all of them for None."""
+        """Start values of coordinates and states, as expressions of the parameters; of all coordinates for None."""
         return {q: self.start_value(q) for q in (self.symbols.q if among is None else among)}
 
     def start_value(self, q: Node) -> Scalar:
-        """Start value of a coordinate, as an expression of the parameters."""
+        """Start value of a coordinate or state, as an expression of the parameters."""
+        if q.name in self.model.states:
+            return self.value(self.model.states[q.name].start)
         coordinate = self.model.coordinates[q.name]
         if coordinate.motion is not None:
             return substituted((self.value(coordinate.motion),), {self.symbols.t: 0})[0]

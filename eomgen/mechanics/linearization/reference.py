@@ -33,8 +33,8 @@ class ReferenceMotion:
     Args:
         system: of the model; about an equilibrium its drives are held.
         about: EQUILIBRIUM, START or STEADY.
-        exact: t, q, u and inputs as scalars of the parameters, as far as they are known so.
-        numbers: t, q, u, inputs and parameters, with 50 digits; parameters without a value have one to try.
+        exact: t, q, u, z and inputs as scalars of the parameters, as far as they are known so.
+        numbers: t, q, u, z, inputs and parameters, with 50 digits; parameters without a value have one to try.
         place: the equilibrium, where it was sought.
         family: the steady motions that one belongs to, where it was sought and they could be written.
         beside: the requested start, which is no equilibrium or steady motion but is near this one; None where no start
@@ -116,6 +116,7 @@ def relative_rest(equations: EquationsOfMotion, guess: Mapping[str, float] | Non
     driven = [q for q in symbols.q if coordinates[q.name].driven]
     given = system.standing({q: start[q] for q in driven})
     forcing = substituted(equations.forcing, given)
+    system.refuse_states("relative rest is not sought", 'ask about = "start"')
     own = {q: k for k, u in enumerate(symbols.u) for q in symbols.q if u.name == f"{q.name}'"}
     if len(own) != len(symbols.u) or len(own) + len(driven) != len(symbols.q):
         raise DerivationError(
@@ -141,11 +142,11 @@ def _place(place: Equilibrium) -> ReferenceMotion:
     system = over_rates(place.statics.system)
     symbols = system.symbols
     still: dict[Node, Scalar] = {symbols.t: 0, **dict.fromkeys(symbols.u, 0)}
-    found = {q: place.exact[q] for q in symbols.q if q in place.exact}
+    found = {q: place.exact[q] for q in symbols.places if q in place.exact}
     exact = (_short(found) if place.numbers else found) | still
     trial = system.scope.values_of_parameters(Random(3))
     numbers: dict[Node, Any] = {**trial, **_numbers(still, trial)}
-    for q in symbols.q:
+    for q in symbols.places:
         numbers[q] = _numbers({q: exact[q]}, trial)[q] if q in exact else fifty_digits().number(place.numbers[q])
     return _with_inputs(ReferenceMotion(system, EQUILIBRIUM, exact, numbers, place))
 
@@ -168,6 +169,7 @@ def at_the_start(system: System, *, at_rest: bool, given: Mapping[str, float] | 
     for u in symbols.u:
         speed = model.coordinates[u.name[:-1]].speed if u.name.endswith("'") else model.speeds[u.name].start
         exact[u] = 0 if at_rest else scope.value(speed)
+    exact |= scope.start_values(symbols.z)
     located = Located(
         {
             **{x: float(v) for x, v in numbers.items()},

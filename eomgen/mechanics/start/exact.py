@@ -149,6 +149,7 @@ def declared_start(system: System, *, at_rest: bool = False) -> dict[Node, Scala
     given = {scope.symbols.t: 0} | scope.start_values(q for q in scope.symbols.q if q not in sought)
     start = scope.with_unit_quaternions(given)
     speeds = dict.fromkeys(scope.symbols.u, 0) if at_rest else start_speeds(system)
+    start |= scope.start_values(scope.symbols.z)
     return start | dict(zip(scope.symbols.u, substituted(tuple(speeds.values()), start), strict=True))
 
 
@@ -407,7 +408,7 @@ def values_where_at_rest(system: System, places: Mapping[Node, Scalar] | None = 
     symbols, scope = system.symbols, system.scope
     sought = system.constraints.fixed_by_position
     given = scope.with_unit_quaternions(scope.start_values(q for q in symbols.q if q not in sought))
-    state = system.standing({**given, **(places or {})})
+    state = system.standing({**given, **scope.start_values(symbols.z), **(places or {})})
     left = [q for q in sought if q not in state]
     return state | (_closed_in(system, state, left) if left else {})
 

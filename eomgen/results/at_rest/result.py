@@ -390,6 +390,7 @@ class Resting(Result):
 def _place(place: Equilibrium) -> dict[str, Any]:
     return {
         "coordinates": {q.name: _of(place, q) for q in place.statics.system.symbols.q},
+        "states": {z.name: _of(place, z) for z in place.statics.system.symbols.z},
         "multipliers": {lam.name: _of(place, lam) for lam in place.statics.lam},
         "stability": _stability_entry(place.stability),
         "pulling": list(place.pulling),
@@ -576,8 +577,9 @@ def _passed(number: int, name: str) -> Statement:
 
 
 def _declared_units(model: Model) -> dict[str, Unit]:
-    """Units of the coordinates that have one in the file."""
-    return {name: q.unit for name, q in model.coordinates.items() if q.unit is not None}
+    """Units of the coordinates and states that have one in the file."""
+    parts = (*model.coordinates.items(), *model.states.items())
+    return {name: part.unit for name, part in parts if part.unit is not None}
 
 
 def _curve(number: int, place: Equilibrium, curve: Curve) -> Statement:
@@ -624,7 +626,7 @@ def _places_in_words(n: int) -> str:
 def _rows(number: int, place: Equilibrium, units: Mapping[str, Unit]) -> list[tuple[Cell, ...]]:
     """A coordinate a row, in the unit that the file declares."""
     rows: list[tuple[Cell, ...]] = []
-    for k, q in enumerate(place.statics.system.symbols.q):
+    for k, q in enumerate(place.statics.system.symbols.places):
         exact: Cell = place.exact.get(q, "")
         unit = units.get(q.name)
         number_there = place.numbers.get(q)

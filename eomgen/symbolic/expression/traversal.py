@@ -133,3 +133,8 @@ class Symbols:
     def x(self) -> tuple[Node, ...]:
         """The whole state, x = (q, u, z)."""
         return self.q + self.u + self.z
+
+    @property
+    def places(self) -> tuple[Node, ...]:
+        """Everything that may have any value at rest, (q, z)."""
+        return self.q + self.z
