@@ -350,6 +350,9 @@ from eomgen.documents.statements import Prose as Prose
 
 # One result: exact, as a number, with the method; or the reason why it is missing
 from eomgen.documents.statements import Quantity as Quantity
+
+# A time derivative: of a coordinate, a state or a quantity
+from eomgen.documents.statements import Rate as Rate
 from eomgen.documents.statements import Side as Side
 from eomgen.documents.statements import Statement as Statement
 

@@ -31,7 +31,7 @@ from eomgen.mechanics.kinematics import Applied, ContactModes, Motion, Scope
 from eomgen.mechanics.start import Start
 from eomgen.model import Model
 from eomgen.proof.check import first_wrong
-from eomgen.proof.in_numbers import STEP
+from eomgen.proof.in_numbers import STEP, declared_state_rates
 from eomgen.symbolic.expression import Node, Scalar, State, Vector, jacobian, symbols_of
 from eomgen.symbolic.numeric import (
     FLOAT,
@@ -362,8 +362,8 @@ class Going:
     """Motion of a system from a state.
 
     Args:
-        state: q, u, t, inputs and parameters.
-        q1, q2: q' and q''.
+        state: q, u, z, t, inputs and parameters.
+        q1, q2: q' and q''; of states of first order z' by the file's own texts, and nothing.
         a: u'.
     """
 
@@ -433,10 +433,11 @@ class Nearby:
         moving = {**state, **dict(zip(symbols.a, a, strict=True))}
         rates = self.equations.system.scope.rates
         q1, q2 = self.at(rates, state), self.at(self.equations.system.scope.with_accelerations(rates), moving)
+        further = declared_state_rates(self.equations.system, moving)
         return Going(
             state,
-            dict(zip(symbols.q, q1, strict=True)),
-            dict(zip(symbols.q, q2, strict=True)),
+            dict(zip((*symbols.q, *symbols.z), (*q1, *further.values()), strict=True)),
+            dict(zip(symbols.q, q2, strict=True)) | dict.fromkeys(symbols.z, 0),
             dict(zip(symbols.u, a, strict=True)),
         )
 

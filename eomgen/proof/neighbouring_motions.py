@@ -223,8 +223,8 @@ class Differences:
     def _rates(self, state: Numbers50) -> Going:
         """Rates of the coordinates at a state; accelerations are not needed."""
         symbols, scope = self.nearby.equations.symbols, self.nearby.equations.system.scope
-        q1 = dict(zip(symbols.q, self.nearby.at(scope.rates, state), strict=True))
-        return Going(state, q1, dict.fromkeys(symbols.q, 0), dict.fromkeys(symbols.u, 0))
+        q1 = dict(zip(symbols.q, self.nearby.at(scope.rates, state), strict=True)) | dict.fromkeys(symbols.z, 0)
+        return Going(state, q1, dict.fromkeys(symbols.places, 0), dict.fromkeys(symbols.u, 0))
 
 
 def _product(a: DigitColumn, b: DigitColumn) -> list[Any]:

@@ -134,8 +134,8 @@ class ReportedMotions:
 
     @cached_property
     def A(self) -> np.ndarray:
-        """State matrix as it is reported; it is proven by itself."""
-        return np.array(self.entries["state_matrix"], dtype=float)
+        """State matrix as it is reported, in the order of coordinates and speeds; it is proven by itself."""
+        return in_order(self.entries, np.array(self.entries["state_matrix"], dtype=float))
 
     def _shape(self, mode: Mapping[str, Any]) -> str:
         """(A - lambda) (v, u) = 0 with some u."""
@@ -162,7 +162,9 @@ class ReportedMotions:
         letters = dict(zip("MCKEFDGH", (*MATRICES[:3], *MATRICES[4:], *PARTS), strict=True))
         space = self.entries["state_space"]
         for letter, rows in self.printed.matrices.items():
-            if letter == "B":
+            if letter == "B_z":
+                rights = [self.matrix("state_input")]
+            elif letter == "B":
                 rights = [self.matrix("input"), np.array(space["B"]["value"], dtype=float)]
             elif letter in letters and letters[letter] in self.entries:
                 rights = [self.matrix(letters[letter])]
@@ -221,7 +223,7 @@ class ReportedMotions:
             self.entries["coordinates"].index(reported["coordinate"]),
             self.entries["inputs"].index(reported["input"]),
         )
-        B = np.array(self.entries["input_matrix"]).astype(complex)
+        B = in_order(self.entries, np.array(self.entries["input_matrix"]).astype(complex), columns=False)
         sizes = abs(np.linalg.eigvals(self.A))
         rate = float(np.mean(sizes[sizes > 0])) if np.any(sizes > 0) else 1.0
         for s in (rate * (0.7 + 0.9j), rate * (-0.4 + 2.3j)):
@@ -233,6 +235,13 @@ class ReportedMotions:
             if abs(above / below - answers[i]) > tolerances.SAME_PLACE * abs(answers).max():
                 return f"{above / below:.6g} for {answers[i]:.6g} at s = {s:.4g}"
         return ""
+
+
+def in_order(entries: Mapping[str, Any], A: np.ndarray, *, columns: bool = True) -> np.ndarray:
+    """Rows, and columns, of a matrix over x = (q, u, z) in the order of coordinates and states, then speeds."""
+    states = list(entries["state_space"]["states"])
+    places = [states.index(name) for name in (*entries["coordinates"], *entries["speeds"])]
+    return np.asarray(A[np.ix_(places, places)] if columns else A[places])
 
 
 def _differ(a: np.ndarray, b: np.ndarray, share: float = tolerances.COMPUTED) -> bool:
@@ -361,7 +370,8 @@ class _Drawn:
         }
         omega = sizes.curves[0].places[:, 0] if sizes.curves else np.ones(1)
         pencil, B = self.pencil(self.reported.matrix), self.reported.matrix("input")
-        right = np.concatenate([np.zeros((self.reported.m, B.shape[1])), B])
+        of_states = self.reported.matrix("state_input") if "state_input" in entries else None
+        right = np.concatenate([np.zeros((self.reported.m, B.shape[1])) if of_states is None else of_states, B])
         answers, rounding = pencil.answers(omega, right)
         of_colour = {curve.color: curve.places for curve in phases.curves}
         for curve in sizes.curves:
@@ -501,8 +511,10 @@ class _Reported:
             "kinematic_rates": (E, self.A[:n, n:]),
             "stiffness": (-np.linalg.solve(M, K), self.A[n:, :n]),
             "input": (np.linalg.solve(M, self.matrix("input")), self.B[n:]),
-            "state_matrix": (np.array(self.entries["state_matrix"], dtype=float), self.A),
+            "state_matrix": (in_order(self.entries, np.array(self.entries["state_matrix"], dtype=float)), self.A),
         }
+        if "state_input" in self.entries:
+            rows["state_input"] = self.matrix("state_input"), self.B[:n]
         if not second or not F.any():  # else C q' has a part along the places
             rows["rates"] = -np.linalg.solve(M, C @ E if second else C), self.A[n:, n:]
         for name, (found, due) in rows.items():
@@ -513,7 +525,10 @@ class _Reported:
     def state_space(self) -> str:
         """y are the coordinates: C_y = [1 0], D_y = 0."""
         reported, n = self.entries["state_space"], len(self.entries["coordinates"])
-        due = {"A": self.A, "B": self.B, "C_y": np.eye(n, len(self.A)), "D_y": np.zeros((n, self.B.shape[1]))}
+        places = [reported["states"].index(x) for x in (*self.entries["coordinates"], *self.entries["speeds"])]
+        back = np.argsort(places)
+        due = {"A": self.A[np.ix_(back, back)], "B": self.B[back], "C_y": np.eye(n, len(self.A))[:, back]}
+        due["D_y"] = np.zeros((n, self.B.shape[1]))
         for letter, right in due.items():
             value = reported[letter]["value"] if letter in reported else None
             if value is not None and right.size and away(np.array(value, dtype=float), right):

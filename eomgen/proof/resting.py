@@ -225,8 +225,9 @@ class _Proof:
         return next(moving, "")
 
     def _state_rates(self) -> dict[str, tuple[Any, Any]]:
-        """{state: (z' by the file's own text, what it changes by where the states are a part larger)}, nothing moving."""
-        system, numbers = self.first.system, self.numbers | dict.fromkeys(self.first.system.symbols.a, 0)
+        """{state: (z' at rest by the file's own text, how fast it changes with the place)}."""
+        system = self.first.system
+        numbers: dict[Node, Any] = {**self.numbers, **dict.fromkeys(system.symbols.a, 0)}
         moved = {x: numbers[x] + STEP * max(1, abs(numbers[x])) for x in system.symbols.places}
         here, there = (declared_state_rates(system, state) for state in (numbers, numbers | moved))
         return {name: (x, abs(there[name] - x) / STEP) for name, x in here.items()}

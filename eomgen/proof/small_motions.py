@@ -89,6 +89,13 @@ def _reference(differences: Differences) -> Check:
         if abs(origin.a[u])
         > tolerances.COMPUTED * (usual.get(u) or most) + tolerances.ZERO_AT_50  # without a row: the largest
     ]
+    size = A[: len(small.numbers.coordinates)] @ np.maximum(1.0, state)
+    moving = dict(zip(small.numbers.coordinates, size, strict=True))
+    wrong += [
+        f"{z.name} changes by {float(origin.q1[z]):.3g}"
+        for z in small.numbers.states
+        if abs(origin.q1[z]) > tolerances.COMPUTED * moving[z] + tolerances.ZERO_AT_50
+    ]
     name = "the equations of motion hold at the reference, without acceleration"
     return checked(name, "; ".join(wrong), "50 digits")
 
@@ -111,6 +118,7 @@ def _matrices(modes: Modes, differences: Differences) -> Iterator[Check]:
         "mass": _in_energy(small, exact["M"], energies, tolerance),
     }
     form = "M q'' + C q' + K q = B w" if small.is_second_order else "M u' + C u + K q = B w, q' = F q + E u"
+    form += " + D w" if small.numbers.states else ""
     yield checked(f"motions near the reference satisfy {form}", wrong["motion"], BY_DIFFERENCES)
     yield checked("they satisfy x' = A x + B w", wrong["state"], BY_DIFFERENCES)
     yield checked("M is the second derivative of the kinetic energy along them", wrong["mass"], BY_DIFFERENCES)
@@ -139,7 +147,7 @@ def _entries(modes: Modes) -> dict[str, list[list[Any]]]:
     small = modes.small
     e: LinearEquations = small.exact or small.numbers
     whole = {"C": _numbers(small, e.C)} if small.is_second_order else {}
-    return {letter: _numbers(small, getattr(e, letter), modes) for letter in "MCKBFE" if letter not in whole} | whole
+    return {letter: _numbers(small, getattr(e, letter), modes) for letter in "MCKBFED" if letter not in whole} | whole
 
 
 def _numbers(small: SmallMotions, rows: Sequence[Sequence[Any]], modes: Modes | None = None) -> list[list[Any]]:
@@ -190,13 +198,14 @@ def _random(nodes: Sequence[Node], rng: Random) -> Numbers50:
 def _in_equations(
     small: SmallMotions, A: Mapping[str, list[list[Any]]], nearby: Sequence[MotionDifference], tolerance: float
 ) -> str:
-    """Message for the first row in which M a + C u + K q = B w or q' = F q + E u does not hold; ""."""
+    """Message for the first row in which M a + C u + K q = B w or q' = F q + E u + D w does not hold; ""."""
     pushed = [[-x for x in row] for row in A["B"]]
     left = [[*m, *c, *k, *b] for m, c, k, b in zip(A["M"], A["C"], A["K"], pushed, strict=True)]
     units = [sum(map(abs, row)) for row in A["M"]]
     balances = sums_of_products(left, [[*a, *u, *at.q, *at.w] for at, u, a in _moving(small, nearby)])
     rates = sums_of_products(
-        [[*f, *e] for f, e in zip(A["F"], A["E"], strict=True)], [[*at.q, *u] for at, u, _ in _moving(small, nearby)]
+        [[*f, *e, *d] for f, e, d in zip(A["F"], A["E"], A["D"], strict=True)],
+        [[*at.q, *u, *at.w] for at, u, _ in _moving(small, nearby)],
     )
     for at, rows, also in zip(nearby, balances, rates, strict=True):
         for speed, row, unit in zip(small.numbers.speeds, rows, units, strict=True):

@@ -115,3 +115,95 @@ def test_units_of_electricity_and_temperature_are_checked():
         assert Unit.parse(one).fits(Unit.parse(other)) and Unit.parse(one).factor == 1
     assert Unit.parse("N*m/A").fits(Unit.parse("V*s/rad")) and not Unit.parse("W/K").fits(Unit.parse("W"))
     assert Unit.parse("l/min").to_si(60_000, 1) == 1 and Unit.parse("bar").to_si(1, 1) == 100_000
+
+
+SERVO = """
+eomgen = 1
+space = "plane"
+[parameters]
+R = { value = 1.2, unit = "ohm" }
+L = { value = 3, unit = "mH" }
+k = { value = 0.8, unit = "N*m/A" }
+r = 0.5
+[coordinates]
+theta = { start = 0.2, unit = "rad" }
+[states]
+i = { unit = "A", rate = "(20*(r - theta) + 30*z - 0.5*theta' - R*i - k/10*theta')/L" }
+z = { unit = "s", rate = "r - theta", about = "integral of the error" }
+[bodies.rotor]
+mass = 0.5
+center = [0.2, 0]
+inertia = 0.02
+joint = { kind = "revolute", angle = "theta", torque = "k*i" }
+[forces.weight]
+kind = "gravity"
+acceleration = [0, -9.81]
+[outputs]
+i_rest = { value = "i", at = "equilibrium" }
+z_rest = { value = "z", at = "equilibrium" }
+"""
+
+
+def test_a_servo_with_integral_part_rests_where_all_vanish_together():
+    """dZ/dz has rank 1 of 2: i = m g l cos(r)/k and z follow from the balance and the rates at once."""
+    found = eomgen.solve(eomgen.loads(SERVO))
+    i = 0.5 * 9.81 * 0.2 * np.cos(0.5) / 0.8
+    assert found["i_rest"].value == pytest.approx(i) and found["z_rest"].value == pytest.approx(1.2 * i / 30)
+
+
+def test_small_motions_hold_the_states_and_modes_say_what_takes_part():
+    """A over x = (q, u, z), eigenvalues, |V o V^-T|; certificate by differences of the texts."""
+    found = eomgen.linearize(eomgen.loads(SERVO))
+    I, i = 0.02 + 0.5 * 0.2**2, 0.5 * 9.81 * 0.2 * np.cos(0.5) / 0.8
+    fall = 0.5 * 9.81 * 0.2 * np.sin(0.5)
+    A = np.array(
+        [[0, 1, 0, 0], [fall / I, 0, 0.8 / I, 0], [-20 / 3e-3, -0.58 / 3e-3, -1.2 / 3e-3, 30 / 3e-3], [-1, 0, 0, 0]]
+    )
+    assert found.state_space().states == ("theta", "theta'", "i", "z") and i > 0
+    assert found.A == pytest.approx(A)
+    values = sorted(np.linalg.eigvals(A), key=lambda x: (x.real, x.imag))
+    assert sorted(found.spectrum.eigenvalues, key=lambda x: (x.real, x.imag)) == pytest.approx(values)
+    fast = found.entries()["modes"][-1]["participation"]
+    assert max(fast, key=fast.get) == "i" and sum(fast.values()) == pytest.approx(1)
+    assert found.certify().ok
+
+
+def test_a_transfer_function_goes_from_the_voltage_to_the_angle():
+    """theta/U = k/(J L s^3 + (J R + b L) s^2 + (R b + k^2) s), in closed form; inputs act on rates."""
+    text = MOTOR.replace("value = 24", "value = 0").replace("late = ", "# ")
+    small = eomgen.linearize(eomgen.loads(text))
+    entry = next(x for x in small.entries()["transfer_functions"] if x["coordinate"] == "theta")
+    assert [entry["numerator"], entry["denominator"]] == [["k"], ["0", "R*b + k^2", "J*R + L*b", "J*L"]]
+    assert small.B == pytest.approx(np.array([[0], [0], [1 / 3e-3]])) and small.certify().ok
+
+
+LAG = """
+eomgen = 1
+space = "plane"
+[parameters]
+m = { value = 2, unit = "kg" }
+k = { value = 50, unit = "N/m" }
+c = { value = 0.1, unit = "N*s/m" }
+T = { value = 0.1, unit = "s" }
+[inputs]
+w = { value = 0.1, unit = "m/s^2" }
+[coordinates]
+x = { start = 0.1, unit = "m" }
+[states]
+f = { unit = "m/s^2", rate = "(x'' - f + w)/T", start = 0.2 }
+h = { unit = "m/s^2", rate = "f' - h/T" }
+[bodies.b]
+mass = "m"
+joint = { kind = "prismatic", displacement = "x", axis = [1, 0], stiffness = "k", damping = "c", force = "-m/5*h" }
+"""
+
+
+def test_rates_that_hold_accelerations_and_other_rates_linearize():
+    """A filter of the acceleration, whose rate another state follows: dz' = Z_a da with da of the equations."""
+    found, equations = eomgen.linearize(eomgen.loads(LAG)), eomgen.derive(eomgen.loads(LAG))
+    m, k, c, T = 2, 50, 0.1, 0.1
+    a = np.array([-k / m, -c / m, 0, -1 / 5])
+    f = a / T + [0, 0, -1 / T, 0]
+    A = np.array([[0, 1, 0, 0], a, f, f + [0, 0, 0, -1 / T]])
+    assert found.A == pytest.approx(A) and equations.rhs_jacobian()[0] == pytest.approx(A)
+    assert found.certify().ok and equations.certify().ok

@@ -41,7 +41,8 @@ from eomgen.symbolic.numeric import NoValue, Work, evaluate, fifty_digits, toler
 # over all coordinates that are not driven, dependent ones among them. sigma is what a velocity row J u + sigma = 0
 # demands at rest: of z' = r - x that x = r. Relations between positions that a velocity row gives by itself (a wheel
 # that rolls) are taken from the start. States of first order are sought with the coordinates: the rate of each stands
-# where the force along it would, for neither need be solvable without the other. The norm of a quaternion, e . e = 1, is one more constraint.
+# where the force along it would, for neither need be solvable without the other. The norm of a quaternion, e . e = 1,
+# is one more constraint.
 
 
 MOST_TERMS = 1000  # of all forces together, when they are written out: they share their parts as they come

@@ -79,14 +79,14 @@ class FirstOrder:
     def seen(self) -> frozenset[str]:
         """The names of symbols in the equations of motion."""
         e = self.equations
-        rows = (*e.M, e.forcing, *e.J, e.sigma, e.gamma)
+        rows = (*e.M, e.forcing, *e.J, e.sigma, e.gamma, e.state_rates)
         return frozenset(x.name for x in symbols_of(x for row in rows for x in row))
 
     @property
     def held(self) -> frozenset[Node]:
         """Symbols that occur in the equations of motion, in the rates and in the relations."""
         scope, rows = self.system.scope, (*self.equations.M, *self.equations.J, *self.rows)
-        entries = (x for row in (*rows, *scope.N) for x in row)
+        entries = (x for row in (*rows, *scope.N, scope.state_rates) for x in row)
         return frozenset(symbols_of((*entries, *self.residual, *scope.rates, *self.relations)))
 
     @property

@@ -50,8 +50,8 @@ from eomgen.mechanics.linearization.reference import (
 )
 from eomgen.mechanics.linearization.steady import family_of, steady_start
 from eomgen.mechanics.state import Exact, NumberField, Numbers
-from eomgen.symbolic.expression import Node, ScalarRow, depends_on_any, operations, order, substituted
-from eomgen.symbolic.numeric import NoValue, dense, fifty_digits, tolerances
+from eomgen.symbolic.expression import Node, ScalarRow, depends_on_any, jacobian, operations, order, substituted
+from eomgen.symbolic.numeric import NoValue, dense, evaluate, fifty_digits, tolerances
 
 # -------- linearization ---------------------------------------------------------------------------------------
 # System -> Linearization: the equations of small motions, exact where they can be, and in numbers.
@@ -121,7 +121,7 @@ class SmallMotions:
         e = self.numbers
         n, w = len(e.coordinates), len(e.inputs)
         below = np.linalg.solve(floats(e.M), np.array(e.B, dtype=float).reshape(len(e.speeds), w))
-        return np.vstack([np.zeros((n, w)), below])
+        return np.vstack([np.array(e.D, dtype=float).reshape(n, w), below])
 
     @staticmethod
     def of(
@@ -138,9 +138,6 @@ class SmallMotions:
                 coordinates do not move by themselves.
         """
         system.scope.model.refuse_motion()
-        system.refuse_states(
-            "small motions are not derived", "take `codegen --jacobian`, or `equations.rhs_jacobian()`"
-        )
         if not system.symbols.u:
             raise DerivationError(
                 "nothing is free to move: there are no small motions",
@@ -369,6 +366,7 @@ def _refuse_carried(first: FirstOrder, reference: ReferenceMotion) -> None:
 
 def _steady(first: FirstOrder, start: ReferenceMotion, wanted: Sequence[str]) -> ReferenceMotion:
     """The steady motion nearest to the start, in closed form where its family has one."""
+    first.system.refuse_states("steady motions are not sought", 'start in one, and ask about = "start"')
     found = steady_start(first, start, wanted)
     there = replace(at_the_start(first.system, at_rest=False, given=found.values), about=STEADY)
     family = family_of(first, there, wanted, found.following)
@@ -410,7 +408,22 @@ def _accelerated(first: FirstOrder, reference: ReferenceMotion) -> str:
     """The speed that does not stay as it is; "" where all do."""
     reducing = Reducing(first, choice_of(first, reference, ()), Numbers(reference.numbers))
     wrong = unsettled(reducing, tolerances.COMPUTED)
-    return first.system.symbols.u[reducing.choice.speeds.free[wrong[0]]].name if wrong else ""
+    if wrong:
+        return first.system.symbols.u[reducing.choice.speeds.free[wrong[0]]].name
+    return _changing_state(first, reference, reducing)
+
+
+def _changing_state(first: FirstOrder, reference: ReferenceMotion, reducing: Reducing) -> str:
+    """The first state of first order whose rate does not vanish there; "" where all do."""
+    symbols, scope = first.system.symbols, first.system.scope
+    known = {**reference.numbers, **dict(zip(symbols.a, map(fifty_digits().number, reducing.at.a), strict=True))}
+    slopes = iter(evaluate([x for row in jacobian(scope.state_rates, symbols.x) for x in row], known, fifty_digits()))
+    sizes = [max(1, abs(known[x])) for x in symbols.x]
+    for z, rate in zip(symbols.z, evaluate(scope.state_rates, known, fifty_digits()), strict=True):
+        usual = sum(abs(next(slopes)) * size for size in sizes)
+        if abs(rate) > tolerances.COMPUTED * usual:
+            return str(z.name)
+    return ""
 
 
 # -------- dependent values ------------------------------------------------------------------------------------
@@ -485,7 +498,7 @@ def refuse_corners(
     Raises:
         DerivationError: they are not.
     """
-    if not _cornered(first.residual):
+    if not _cornered((*first.residual, *first.equations.state_rates)):
         return
     symbols, rng = first.system.symbols, Random(7)
     changes = _changed(first, choice, reference, raw, kept)
@@ -613,3 +626,5 @@ def _compared(equations: LinearEquations, kept: Sequence[int]) -> Iterator[np.nd
     yield floats(equations.K)[:, list(kept)]
     yield floats(equations.F)[np.ix_(kept, kept)]
     yield floats(equations.E)[list(kept)]
+    if equations.states and equations.inputs:
+        yield floats(equations.D)[list(kept)]

@@ -71,6 +71,23 @@ class Modes:
         return spectrum_of(self.small, self.polynomial)
 
     @cached_property
+    def participation(self) -> tuple[dict[str, float], ...]:
+        """Of each mode how much each of x = (q_i, u_i, z) takes part in it: |V o V^-T|, sums 1; () of merged modes.
+
+        Source: Perez-Arriaga, Verghese & Schweppe, IEEE Trans. PAS 101 (1982) 3117.
+        """
+        e, A = self.small.numbers, self.small.state_matrix
+        values, V = np.linalg.eig(A)
+        if np.linalg.cond(V / abs(V).max(axis=0)) > 1 / tolerances.SAME_PLACE:
+            return ()
+        shares = abs(V * np.linalg.inv(V).T)
+        names, found = (*e.coordinates, *e.speeds), []
+        for mode in self.spectrum.modes:
+            own = shares[:, int(np.argmin(abs(values - mode.eigenvalue)))]
+            found.append({names[k].name: float(own[k] / own.sum()) for k in e.order})
+        return tuple(found)
+
+    @cached_property
     def polynomial(self) -> Polynomial | None:
         """det(s^2 M + s C + K); None where it is not written exactly."""
         exact = self.small.exact

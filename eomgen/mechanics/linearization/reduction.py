@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import field as dataclass_field
 from dataclasses import replace
 from functools import cached_property
+from itertools import accumulate, pairwise
 from typing import Any
 
 import numpy as np
@@ -20,7 +22,7 @@ from eomgen.mechanics.linearization.reference import ReferenceMotion
 from eomgen.mechanics.state import At, Entries, NumberField
 from eomgen.model import rotation_of
 from eomgen.symbolic.exact import Polynomial, cramer
-from eomgen.symbolic.expression import Matrix, Node, Vector, symbols_of
+from eomgen.symbolic.expression import Matrix, Node, Vector, is_zero, symbols_of
 from eomgen.symbolic.numeric import fifty_digits, tolerances, without_noise
 
 # -------- reduction -------------------------------------------------------------------------------------------
@@ -49,13 +51,15 @@ LARGEST_PENCIL = 6  # rows of a determinant that is written out
 
 @dataclass(frozen=True)
 class LinearEquations:
-    """M du_i' + C du_i + K dq_i = B dw,  dq_i' = F dq_i + E du_i.
+    """M du_i' + C du_i + K dq_i = B dw,  dq_i' = F dq_i + E du_i + D dw.
 
     Args:
-        coordinates: q_i.
+        coordinates: q_i, and after them the states of first order.
         speeds: u_i.
         inputs: w.
-        all: every coordinate, dq = P dq_i.
+        all: every coordinate and state, dq = P dq_i.
+        D: of the states, on whose rates inputs act; a row of each of q_i, 0 of a coordinate.
+        states: of first order, among the coordinates.
     """
 
     coordinates: tuple[Node, ...]
@@ -69,6 +73,22 @@ class LinearEquations:
     F: Entries
     E: Entries
     P: Entries
+    D: Entries = dataclass_field(default_factory=list)
+    states: tuple[Node, ...] = ()
+
+    @property
+    def order(self) -> tuple[int, ...]:
+        """Places of x = (q_i, u_i, z) among the coordinates, states and speeds as they stand here."""
+        n = len(self.coordinates)
+        own = [k for k, q in enumerate(self.coordinates) if q not in self.states]
+        states = [k for k, q in enumerate(self.coordinates) if q in self.states]
+        return (*own, *range(n, n + len(self.speeds)), *states)
+
+    @property
+    def moving(self) -> tuple[Node, ...]:
+        """x = (q_i, u_i, z)."""
+        every = (*self.coordinates, *self.speeds)
+        return tuple(every[k] for k in self.order)
 
     def matrix(self, function: str) -> Entries:
         """The matrix of an output function: M of mass, C of damping, K of stiffness."""
@@ -77,7 +97,7 @@ class LinearEquations:
     @property
     def laplace_variable(self) -> Node:
         """A symbol s that neither the entries nor the coordinates have."""
-        entries = [x for A in (self.M, self.C, self.K, self.B) for row in A for x in row]
+        entries = [x for A in (self.M, self.C, self.K, self.B, self.F, self.E, self.D) for row in A for x in row]
         taken = {x.name for x in (*symbols_of(entries), *self.all, *self.inputs)}
         return self.speeds[0].graph.symbol(next(name for name in ("s", "s_", "s__", "s___") if name not in taken))
 
@@ -162,7 +182,7 @@ class Reducing:
     def equations(self) -> LinearEquations:
         """The equations of small motions."""
         field, choice, symbols = self.field, self.choice, self.first.system.symbols
-        at, P, n = self.at, self.P, len(symbols.u)
+        at, P, n, z = self.at, self.P, len(symbols.u), symbols.z
         R_q, R_u = self.derivative("R_q"), self.derivative("R_u")
         Y = [[0] * len(choice.places.free)] * n
         X_q, X_u = Y, [[0] * len(choice.speeds.free)] * n
@@ -175,7 +195,7 @@ class Reducing:
         C = field.total(field.product(R_u, at.Z), field.product(at.M, X_u))
         N = field.matrix(self.first.system.scope.N)
         rates = field.total(field.product(self.derivative("S_q"), P), field.product(N, Y))
-        return LinearEquations(
+        found = LinearEquations(
             tuple(symbols.q[k] for k in choice.places.free),
             tuple(symbols.u[k] for k in choice.speeds.free),
             tuple(symbols.inputs.values()),
@@ -187,7 +207,55 @@ class Reducing:
             [rates[k] for k in choice.places.free],
             field.product([N[k] for k in choice.places.free], at.Z),
             P,
+            [[0] * len(symbols.inputs) for _ in choice.places.free],
         )
+        return self._with_states(found, (Y, X_q, X_u)) if z else found
+
+    def _with_states(self, e: LinearEquations, follow: tuple[Entries, Entries, Entries]) -> LinearEquations:
+        """The equations with the states of first order behind the coordinates.
+
+        dz' = (Z_q P + Z_u Y + Z_a X_q) dq_i + (Z_u Z + Z_a X_u) du_i + Z_z dz + Z_a Z da_i + Z_w dw,
+
+        da_i by M da_i + C du_i + K dq_i + Z^T R_z dz = B dw where the rates hold accelerations.
+
+        Args:
+            follow: Y, X_q, X_u of what follows: du = Z du_i + Y dq_i, da = Z da_i + X_u du_i + X_q dq_i.
+        """
+        field, at, z = self.field, self.at, self.first.system.symbols.z
+        (Y, X_q, X_u), n, m = follow, len(e.coordinates), len(z)
+        Z_q, Z_u, Z_z, Z_a, Z_w = (self.derivative(f"Z_{x}") for x in "quzaw")
+        by_places = field.total(field.product(Z_q, self.P), field.product(Z_u, Y), field.product(Z_a, X_q))
+        E = field.total(field.product(Z_u, at.Z), field.product(Z_a, X_u))
+        K = _beside(e.K, at.along(self.derivative("R_z")))
+        F, D, A = _beside(by_places, Z_z), Z_w, field.product(Z_a, at.Z)
+        if not all(is_zero(x) for row in A for x in row):
+            solved = field.solution(e.M, _beside(_beside(K, e.C), e.B))
+            K_a, C_a, B_a = (_columns(solved, part) for part in _parts(n + m, len(e.speeds), len(e.inputs)))
+            F = field.total(F, field.negative(field.product(A, K_a)))
+            E = field.total(E, field.negative(field.product(A, C_a)))
+            D = field.total(D, field.product(A, B_a)) if e.inputs else D
+        return replace(
+            e,
+            coordinates=(*e.coordinates, *z),
+            all=(*e.all, *z),
+            K=K,
+            F=[*([*row, *[0] * m] for row in e.F), *F],
+            E=[*e.E, *E],
+            P=[*([*row, *[0] * m] for row in e.P), *([0] * n + [int(i == j) for j in range(m)] for i in range(m))],
+            D=[*e.D, *D],
+            states=z,
+        )
+
+
+def _beside(left: Entries, right: Entries) -> Entries:
+    """(left, right), row by row."""
+    return [[*a, *b] for a, b in zip(left, right, strict=True)]
+
+
+def _parts(*sizes: int) -> list[range]:
+    """The columns of each of several matrices that stand side by side."""
+    ends = [0, *accumulate(sizes)]
+    return [range(a, b) for a, b in pairwise(ends)]
 
 
 def dependent_speeds(first: FirstOrder, choice: Choice, field: NumberField) -> dict[Node, Any]:
@@ -252,9 +320,11 @@ def carrying(equations: LinearEquations, wanted: Sequence[str], dependent: Colle
     kept = list(range(len(equations.coordinates)))
     K, F, E = (floats(x) for x in (equations.K, equations.F, equations.E))
     K, F = without_noise(K, tolerances.COMPUTED), without_noise(F, tolerances.COMPUTED)
-    while len(kept) > len(equations.speeds):
-        unseen = [j for j in kept if not np.any(K[:, j]) and not np.any(F[kept, j])]
-        still = [j for j in kept if not np.any(E[j]) and not np.any(F[j, kept])]
+    states = [equations.coordinates.index(z) for z in equations.states]
+    while len(kept) > len(equations.speeds) + len(states):
+        own = [j for j in kept if j not in states]
+        unseen = [j for j in own if not np.any(K[:, j]) and not np.any(F[kept, j])]
+        still = [j for j in own if not np.any(E[j]) and not np.any(F[j, kept])]
         idle = [*unseen, *still]
         if not idle:
             break
@@ -266,7 +336,8 @@ def carrying(equations: LinearEquations, wanted: Sequence[str], dependent: Colle
 def seen_beside_own(equations: LinearEquations, kept: Indices) -> tuple[int, ...]:
     """Indices among `kept` of coordinates on which the motion depends, or that have a speed of their own."""
     K, F, E = (without_noise(floats(x), tolerances.COMPUTED) for x in (equations.K, equations.F, equations.E))
-    own = [j for j in kept if not _strangeness(E[j]) and not np.any(F[j])]
+    states = [equations.coordinates.index(z) for z in equations.states]
+    own = [j for j in kept if j in states or (not _strangeness(E[j]) and not np.any(F[j]))]
     seen = {j for j in kept if np.any(K[:, j])} | {*own}
     while more := {j for j in kept if np.any(F[[*seen], j])} - seen:
         seen |= more
@@ -312,13 +383,14 @@ def over_coordinates(field: NumberField, equations: LinearEquations, kept: Indic
         P=_columns(equations.P, kept),
         F=[[equations.F[i][j] for j in kept] for i in kept],
         E=[equations.E[i] for i in kept],
+        D=[equations.D[i] for i in kept],
     )
     return _second_order(field, chosen) if _can_be_of_second_order(field, chosen) else chosen
 
 
 def _can_be_of_second_order(field: NumberField, equations: LinearEquations) -> bool:
     n = len(equations.speeds)
-    if len(equations.coordinates) != n:
+    if len(equations.coordinates) != n or equations.states:
         return False
     E = np.array([[field.size(x) for x in row] for row in equations.E])
     return is_second_order(equations) or (n > 0 and bool(np.linalg.matrix_rank(E, tol=tolerances.RANK) == n))
@@ -329,6 +401,7 @@ def is_second_order(equations: LinearEquations) -> bool:
     n = len(equations.speeds)
     return (
         len(equations.coordinates) == n
+        and not equations.states
         and all(x == int(i == j) for i, row in enumerate(equations.E) for j, x in enumerate(row))
         and all(x == 0 for row in equations.F for x in row)
     )
@@ -365,6 +438,9 @@ def restricted(
     names = [q.name for q in equations.coordinates]
     if not wanted or list(wanted) == names:
         return equations
+    if equations.states:
+        what = f"{', '.join(wanted)} cannot move alone: states of first order move with them"
+        raise DerivationError(what, "linearize.coordinates", "leave the list out: all move")
     if not is_second_order(equations) or set(wanted) - set(names):
         strange = [name for name in wanted if name not in names]
         what = f"'{strange[0]}' is not free to move by itself" if strange else "coordinates without a speed are left"

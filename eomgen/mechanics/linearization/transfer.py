@@ -43,7 +43,7 @@ def transfer_functions(
     if pencil is None:
         return ()
     below = Polynomial.of(cramer.determinant(pencil), s, positive)
-    right = [[0] * len(e.inputs)] * (len(pencil) - len(e.B)) + e.B
+    right = [*(e.D if len(pencil) > len(e.B) else ()), *e.B]
     found = []
     for k, w in enumerate(e.inputs):
         for j, q in enumerate(e.coordinates):
@@ -100,7 +100,7 @@ def _of_floats(highest_first: np.ndarray) -> Polynomial:
 # -------- state space -----------------------------------------------------------------------------------------
 # Small motions -> their state space, x' = A x + B w, y = C_y x + D_y w, exact where that is little work.
 #
-# x = (dq_i, du_i),   A = [F, E; -M^-1 K, -M^-1 C],   B = [0; M^-1 B_w]
+# x = (dq_i, du_i),   A = [F, E; -M^-1 K, -M^-1 C],   B = [D; M^-1 B_w];   for users x = (dq_i, du_i, dz)
 
 
 MOST = 4  # speeds of a state space that is written exactly
@@ -135,11 +135,11 @@ class StateMatrices:
         reference = small.reference
         field = Exact({}, reference.system.scope.positive, reference.trial)
         solved = field.solution(e.M, right)
-        n, width = len(e.coordinates), len(e.coordinates) + len(e.speeds)
+        width = len(e.coordinates) + len(e.speeds)
         A = [[*f, *g] for f, g in zip(e.F, e.E, strict=True)] + [
             [field.tidy(-x) for x in row[:width]] for row in solved
         ]
-        B: Entries = [[0] * len(e.inputs) for _ in range(n)] + [row[width:] for row in solved]
+        B: Entries = [*([*row] for row in e.D), *(row[width:] for row in solved)]
         return StateMatrices.of(e, A, B, outputs)
 
     @staticmethod
@@ -147,19 +147,17 @@ class StateMatrices:
         """The state space whose outputs are states, or rates of them.
 
         Args:
+            A, B: rows and columns in the order of the coordinates, states and speeds of the equations.
             outputs: names of coordinates, speeds, or their derivatives: theta, theta', theta''.
         Raises:
             UsageError: another name.
         """
-        states = state_names(e)
+        A = [[A[i][j] for j in e.order] for i in e.order]
+        B = [B[i] for i in e.order]
+        states = tuple(x.name for x in e.moving)
         rows = [_output(name, states, A, B) for name in outputs]
         C_y, D_y = [row for row, _ in rows], [through for _, through in rows]
         return StateMatrices(states, tuple(w.name for w in e.inputs), tuple(outputs), A, B, C_y, D_y)
-
-
-def state_names(e: LinearEquations) -> tuple[str, ...]:
-    """x: the coordinates, then the speeds."""
-    return tuple(x.name for x in (*e.coordinates, *e.speeds))
 
 
 def _output(name: str, states: tuple[str, ...], A: Entries, B: Entries) -> tuple[list[object], list[object]]:

@@ -19,6 +19,7 @@ from eomgen.documents import (
     Picture,
     Piece,
     Quantity,
+    Rate,
     Reader,
     Result,
     Sketch,
@@ -514,7 +515,10 @@ def rest_balance_step(statics: StaticEquations, reader: Reader) -> Step:
     law = REST_WITH_CONSTRAINTS if statics.lam else REST
     words = "At rest the virtual work of all forces vanishes for every displacement"
     words += ", those of the constraints included: " if statics.lam else ": "
-    held = open_at_rest(statics.system)
+    held: list[Statement] = []
+    if statics.system.symbols.z:
+        held.append(prose("The rates of the states of first order vanish with the forces."))
+    held += open_at_rest(statics.system)
     if statics.held:
         held += [prose(f"Driven coordinates are held at their start: {', '.join(statics.held)}.")]
     forces = _all_forces(reader, statics)
@@ -542,7 +546,9 @@ def _nowhere(reader: Reader, statics: StaticEquations) -> tuple[Statement, ...]:
 def _all_forces(reader: Reader, statics: StaticEquations) -> tuple[Statement, ...]:
     """The equation along every coordinate; with constraints the multipliers stand in it next to Q."""
     if not statics.lam:
-        pairs = [(Name("Q", by=q), force) for q, force in zip(statics.q, statics.forces, strict=True)]
+        z = statics.system.symbols.z
+        balance = zip(statics.q, statics.forces, strict=True)
+        pairs = [(Rate(q) if q in z else Name("Q", by=q), force) for q, force in balance]
         others = tuple(Formula((reader.shown(x), 0)) for x in statics.beside)
         return (*page(reader, pairs, then=(0,)), *others)
     return tuple(Formula((reader.shown(x), 0)) for x in (*statics.forces, *statics.beside))
@@ -578,8 +584,8 @@ def _passed(number: int, name: str) -> Statement:
 
 def _declared_units(model: Model) -> dict[str, Unit]:
     """Units of the coordinates and states that have one in the file."""
-    parts = (*model.coordinates.items(), *model.states.items())
-    return {name: part.unit for name, part in parts if part.unit is not None}
+    units = {name: q.unit for name, q in model.coordinates.items()} | {n: z.unit for n, z in model.states.items()}
+    return {name: unit for name, unit in units.items() if unit is not None}
 
 
 def _curve(number: int, place: Equilibrium, curve: Curve) -> Statement:
@@ -645,6 +651,8 @@ def _stability_step(found: Equilibria) -> Step:
     constraints = bool(found.statics.lam)
     law: tuple[Piece, ...] = (STIFFNESS, ", ", ALONG) if constraints else (SECOND,)
     statements: list[Statement] = [prose("The second variation of the potential energy decides: ", *law, ".")]
+    if found.statics.system.symbols.z:
+        statements = []
     for number, place in enumerate(found.found, start=1):
         statements += _verdict(number, place.stability)
     return Step("stability", "Stability", tuple(statements))

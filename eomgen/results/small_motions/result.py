@@ -114,18 +114,19 @@ class Linearization(Result):
 
     @property
     def A(self) -> np.ndarray:
-        """The state matrix, x = (coordinates, speeds)."""
+        """The state matrix, x = (coordinates, speeds, states of first order)."""
         self._refuse_unvalued()
-        return self.small.state_matrix
+        order = self.equations.order
+        return self.small.state_matrix[np.ix_(order, order)]
 
     @property
     def B(self) -> np.ndarray:
         """The input matrix of x' = A x + B w."""
         self._refuse_unvalued()
-        return self.small.input_matrix
+        return self.small.input_matrix[list(self.equations.order)]
 
     def state_space(self, outputs: Sequence[str] = ()) -> StateSpace:
-        """x' = A x + B w, y = C_y x + D_y w, x = (coordinates, speeds).
+        """x' = A x + B w, y = C_y x + D_y w, x = (coordinates, speeds, states of first order).
 
         Args:
             outputs: y: names of coordinates, of speeds, or of their rates (theta''); (): the coordinates.
@@ -310,6 +311,7 @@ class Linearization(Result):
             "family": self._family(reference.family),
             "coordinates": list(self.coordinates),
             "speeds": list(self.speeds),
+            "states": [z.name for z in self.equations.states],
             "inputs": list(self.inputs),
             "left_out": [q.name for q in self.small.left_out],
             "second_order": self.small.is_second_order,
@@ -330,6 +332,7 @@ class Linearization(Result):
                 for name, letter in (("damping", "D"), ("gyroscopic", "G"), ("circulatory", "H"))
                 if parts
             },
+            **({"state_input": self._matrix(equations.D)} if equations.states else {}),
             "state_space": self._state_space_entry(),
             "state_matrix": self.A.tolist() if self.valued else None,
             "input_matrix": self.B.tolist() if self.valued else None,
@@ -346,7 +349,7 @@ class Linearization(Result):
                 for f in self.modes.transfers
             ],
             "eigenvalues": [[x.real, x.imag] for x in self.spectrum.eigenvalues] if self.valued else None,
-            "modes": [self._mode(mode) for mode in self.modes.spectrum.modes] if self.valued else None,
+            "modes": [self._mode(k, mode) for k, mode in enumerate(self.spectrum.modes)] if self.valued else None,
             "stability": self.spectrum.stability if self.valued else None,
             "why": self.spectrum.why if self.valued else None,
         }
@@ -355,7 +358,7 @@ class Linearization(Result):
         """The state space with the coordinates as outputs."""
         exact, numbers = self._state_spaces(self.coordinates)
         return {
-            "states": [*self.coordinates, *self.speeds],
+            "states": [x.name for x in self.equations.moving],
             "outputs": list(self.coordinates),
             **{
                 letter: {
@@ -400,7 +403,8 @@ class Linearization(Result):
         flat = iter(numbers_of([x for row in A for x in row], self.small.reference.system.scope.known_exactly))
         return [[next(flat) for _ in row] for row in A]
 
-    def _mode(self, mode: Mode) -> dict[str, Any]:
+    def _mode(self, k: int, mode: Mode) -> dict[str, Any]:
+        shares = self.modes.participation if self.equations.states else ()
         exact = next((f.exact for f in self.frequencies if f.mode is mode), None)
         return {
             "eigenvalue": [mode.eigenvalue.real, mode.eigenvalue.imag],
@@ -409,6 +413,7 @@ class Linearization(Result):
             "damping_ratio": mode.damping_ratio,
             "kind": mode.kind,
             "shape": {q.name: [x.real, x.imag] for q, x in mode.shape.items()},
+            **({"participation": shares[k]} if shares else {}),
         }
 
 

@@ -57,6 +57,7 @@ FORCED = (
 )
 UNDAMPED = Law("M*q'' + K*q = 0", r"M \ddot{q} + K q = 0")
 FIRST_ORDER = Law("M*u' + C*u + K*q = B*w,  q' = E*u + F*q", r"M \dot{u} + C u + K q = B w,\quad \dot{q} = E u + F q")
+WITH_STATES = Law(f"{FIRST_ORDER.text} + B_z*w", FIRST_ORDER.latex + r" + B_{z} w")
 WHERE = Law(
     "R = M*a - Q + c - J^T*lam",
     r"R = M a - Q + c - J^{\mathsf{T}} \lambda",
@@ -115,6 +116,7 @@ def _equations(modes: Modes) -> Step:
     if constrained:
         statements.append(prose("The constraints, differentiated, say what follows: ", FOLLOW, "."))
     law = (SECOND_ORDER if e.inputs else UNDAMPED if undamped else FREE) if small.is_second_order else FIRST_ORDER
+    law = WITH_STATES if e.states and e.inputs else law
     statements.append(prose(law, "."))
     if small.forced:
         statements.append(prose(FORCED))
@@ -135,6 +137,8 @@ def _equations(modes: Modes) -> Step:
     if not small.is_second_order:
         statements += _entries(modes, "E", e.E, e.coordinates, e.speeds)
         statements += _entries(modes, "F", e.F, e.coordinates, e.coordinates)
+    if e.states:
+        statements += _entries(modes, "B_z", e.D, e.coordinates, e.inputs)
     return Step("equations", "Equations to first order", tuple(statements))
 
 
@@ -302,6 +306,12 @@ def _modes(modes: Modes) -> Step:
         rows = [_row(k, mode) for k, mode in enumerate(listed_modes, start=1)]
         head = ("mode", "eigenvalue [1/s]", "omega [rad/s]", "f [Hz]", "damping ratio", "")
         statements += [narrow_grid(head, rows), _shapes(listed_modes)]
+        if modes.small.numbers.states and modes.participation:
+            names = [f"mode {k}" for k in range(1, len(rows) + 1)]
+            every = modes.small.numbers.moving
+            shares: list[tuple[Cell, ...]] = [(x, *(f"{y[x.name]:.3f}" for y in modes.participation)) for x in every]
+            statements.append(prose("What takes part in each mode, of x the shares abs(V o V^-T):"))
+            statements.append(Grid(("share", *names), tuple(shares)))
     if not statements:
         statements.append(prose("The modes depend on the values of the parameters."))
     return Step("modes", "Modes", tuple(statements))
@@ -375,7 +385,7 @@ def _state_space(modes: Modes) -> tuple[Step, ...]:
     shown = _state_matrices(modes) if len(e.speeds) <= MOST_WRITTEN else ()
     if not shown:
         return ()
-    words = prose(Law("x' = A*x", r"\dot{x} = A x"), ", with x = (", *listed_symbols((*e.coordinates, *e.speeds)), "):")
+    words = prose(Law("x' = A*x", r"\dot{x} = A x"), ", with x = (", *listed_symbols(e.moving), "):")
     if e.inputs:
         words = _with_inputs(e)
     letters = ("A", "B", "C_y", "D_y")
@@ -387,7 +397,7 @@ def _with_inputs(e: LinearEquations) -> Prose:
     return prose(
         Law("x' = A*x + B*w,  y = C_y*x + D_y*w", r"\dot{x} = A x + B w,\quad y = C_{y} x + D_{y} w"),
         ", with x = (",
-        *listed_symbols((*e.coordinates, *e.speeds)),
+        *listed_symbols(e.moving),
         "), w = (",
         *listed_symbols(e.inputs),
         ") and y = (",
@@ -500,7 +510,7 @@ def reference_step(modes: Modes) -> Step:
     """The state, how it was found, and the family that a steady motion belongs to."""
     small, reference = modes.small, modes.small.reference
     symbols = reference.system.symbols
-    shown = symbols.q if reference.about_equilibrium else symbols.x
+    shown = symbols.places if reference.about_equilibrium else symbols.x
     rows: list[tuple[Cell, ...]] = []
     for x in shown:
         exact: Cell = reference.exact.get(x, "")
