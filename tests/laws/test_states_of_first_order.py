@@ -204,6 +204,6 @@ def test_rates_that_hold_accelerations_and_other_rates_linearize():
     m, k, c, T = 2, 50, 0.1, 0.1
     a = np.array([-k / m, -c / m, 0, -1 / 5])
     f = a / T + [0, 0, -1 / T, 0]
-    A = np.array([[0, 1, 0, 0], a, f, f + [0, 0, 0, -1 / T]])
+    A = np.array([[0, 1, 0, 0], a, f, f - np.array([0, 0, 0, 1 / T])])
     assert found.A == pytest.approx(A) and equations.rhs_jacobian()[0] == pytest.approx(A)
     assert found.certify().ok and equations.certify().ok

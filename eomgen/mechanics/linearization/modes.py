@@ -70,9 +70,9 @@ class Modes:
     def spectrum(self) -> Spectrum:
         return spectrum_of(self.small, self.polynomial)
 
-    @cached_property
+    @property
     def participation(self) -> tuple[dict[str, float], ...]:
-        """Of each mode how much each of x = (q_i, u_i, z) takes part in it: |V o V^-T|, sums 1; () of merged modes.
+        """Shares of x = (q_i, u_i, z) in each mode, |V o V^-T|, their sum 1; () where modes have come to be one.
 
         Source: Perez-Arriaga, Verghese & Schweppe, IEEE Trans. PAS 101 (1982) 3117.
         """

@@ -481,6 +481,7 @@ def _taken(e: LinearEquations, c: Indices) -> LinearEquations:
         F=part(e.F),
         B=[e.B[i] for i in c],
         P=_columns(e.P, c),
+        D=[e.D[i] for i in c],
     )
 
 

@@ -515,10 +515,8 @@ def rest_balance_step(statics: StaticEquations, reader: Reader) -> Step:
     law = REST_WITH_CONSTRAINTS if statics.lam else REST
     words = "At rest the virtual work of all forces vanishes for every displacement"
     words += ", those of the constraints included: " if statics.lam else ": "
-    held: list[Statement] = []
-    if statics.system.symbols.z:
-        held.append(prose("The rates of the states of first order vanish with the forces."))
-    held += open_at_rest(statics.system)
+    rates_too = prose("The rates of the states of first order vanish with the forces.")
+    held = [*([rates_too] if statics.system.symbols.z else []), *open_at_rest(statics.system)]
     if statics.held:
         held += [prose(f"Driven coordinates are held at their start: {', '.join(statics.held)}.")]
     forces = _all_forces(reader, statics)
@@ -650,9 +648,8 @@ def _rows(number: int, place: Equilibrium, units: Mapping[str, Unit]) -> list[tu
 def _stability_step(found: Equilibria) -> Step:
     constraints = bool(found.statics.lam)
     law: tuple[Piece, ...] = (STIFFNESS, ", ", ALONG) if constraints else (SECOND,)
-    statements: list[Statement] = [prose("The second variation of the potential energy decides: ", *law, ".")]
-    if found.statics.system.symbols.z:
-        statements = []
+    words = prose("The second variation of the potential energy decides: ", *law, ".")
+    statements: list[Statement] = [] if found.statics.system.symbols.z else [words]
     for number, place in enumerate(found.found, start=1):
         statements += _verdict(number, place.stability)
     return Step("stability", "Stability", tuple(statements))
