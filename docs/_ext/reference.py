@@ -44,7 +44,11 @@ from eomgen.model.fields import (  # noqa: E402
 )
 from eomgen.model.joints.base import Turned  # noqa: E402
 from eomgen.model.joints.path import PathPiece  # noqa: E402
-from eomgen.model.kinds import ReactionSymbolsRule, Resistance  # noqa: E402
+from eomgen.model.kinds import (  # noqa: E402
+    LimitsRule,
+    ReactionSymbolsRule,
+    Resistance,
+)
 from eomgen.model.model import Model  # noqa: E402
 from eomgen.model.part import PartRule, SeamRule, Slot, meanings  # noqa: E402
 from eomgen.model.parts import (  # noqa: E402
@@ -139,6 +143,11 @@ def _(rule: FormulaRule) -> str:
     names = "" if rule.scope == PARAMETERS else f" of {rule.scope}"
     unit = f" [{rule.unit}]" if rule.unit not in (None, "1") else ""
     return f"{words}{rule.sign} expression{names}{unit}".strip()
+
+
+@value_of.register
+def _(rule: LimitsRule) -> str:
+    return f'2 of: "inf", or {value_of(rule.item)}'
 
 
 @value_of.register

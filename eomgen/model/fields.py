@@ -89,6 +89,7 @@ class FormulaRule(WholeRule):
         also: names that mean something here only (`r` of `between`), rates with a prime, and in which unit.
         functions: of the motion, that may be called: x(bead.center).
         usually: effect of a value below zero that is hardly intended.
+        in_own_unit: a plain number is in the unit that a coordinate declares.
         same_as, works_on: the field of the part that names a coordinate: the value is one of it, or does work on it.
     """
 
@@ -102,6 +103,7 @@ class FormulaRule(WholeRule):
     usually: str = ""
     same_as: str = ""
     works_on: str = ""
+    in_own_unit: bool = False
 
     def read(self, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> Any:
         if isinstance(raw, Mapping):

@@ -193,3 +193,97 @@ class Resistance(Part):
 
 
 FrictionLaw = Annotated[Resistance, PartRule(Resistance)]
+
+
+# -------- limits ----------------------------------------------------------------------------------------------
+# Limits of a joint's variables: rigid stops, each a constraint that can only push.
+
+
+ENDLESS = ("inf", "-inf")
+
+
+@dataclass(frozen=True)
+class Limits:
+    """The least and the largest value of a joint's variable; None where there is none."""
+
+    low: Expression | None = None
+    high: Expression | None = None
+
+
+@dataclass(frozen=True)
+class LimitsRule:
+    """[least, largest], each a number in the coordinate's unit, an expression in SI, or "inf" where there is none."""
+
+    item: FormulaRule
+
+    def read(self, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> Limits | None:
+        if isinstance(raw, Limits):
+            return raw
+        if not isinstance(raw, (list, tuple)) or len(raw) != 2:
+            found.append(
+                Diagnostic(path, "the least and the largest value are needed here", 'like [-1.5, 1.5], "inf" for none')
+            )
+            return None
+        ends = [None if self._is_endless(x) else self.item.read(x, (*path, i), found) for i, x in enumerate(raw)]
+        return Limits(*ends)
+
+    @staticmethod
+    def _is_endless(raw: Any) -> bool:
+        return str(raw) in ENDLESS
+
+    def leaves(self, value: Limits, path: DocumentPath, part: Any) -> Iterator[Leaf]:
+        for i, x in enumerate((value.low, value.high)):
+            if x is not None:
+                yield from self.item.leaves(x, (*path, i), part)
+
+    def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
+        one = {"anyOf": [{"enum": list(ENDLESS)}, self.item.schema(definitions)]}
+        return {"type": "array", "items": one, "minItems": 2, "maxItems": 2}
+
+
+@dataclass(frozen=True)
+class KeptRule:
+    """A value that another field declares: it is checked there."""
+
+    def read(self, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> Any:
+        return raw
+
+    def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
+        yield from ()
+
+    def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
+        return {}
+
+
+AngleLimits = Annotated[Limits, LimitsRule(FormulaRule("rad", in_own_unit=True))]
+SlideLimits = Annotated[Limits, LimitsRule(FormulaRule("m", in_own_unit=True))]
+Kept = Annotated[Any, KeptRule()]
+
+
+@dataclass(frozen=True, kw_only=True)
+class SleeveLimits(Part):
+    """Limits of what turns about an axis and slides along it.
+
+    Args:
+        displacement: [least, largest], in the unit of its coordinate [m].
+        angle: the same [rad].
+    """
+
+    title: ClassVar[str] = "limits"
+    displacement: SlideLimits | None = None
+    angle: AngleLimits | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlanarLimits(Part):
+    """Limits of what moves in a plane.
+
+    Args:
+        x, y: [least, largest], in the unit of each coordinate [m].
+        angle: the same [rad].
+    """
+
+    title: ClassVar[str] = "limits"
+    x: SlideLimits | None = None
+    y: SlideLimits | None = None
+    angle: AngleLimits | None = None

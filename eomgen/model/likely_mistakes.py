@@ -82,7 +82,7 @@ def _assumed(catalog: Catalog) -> dict[str, AnyNumber]:
 def _angles(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Diagnostic]:
     """Diagnostics of plain numbers of more than a turn among the terms of an angle."""
     for leaf, expression in catalog.expressions:
-        if getattr(leaf.rule, "unit", None) != "rad":
+        if getattr(leaf.rule, "unit", None) != "rad" or getattr(leaf.rule, "in_own_unit", False):
             continue
         for number, column in _terms(expression):
             size = abs(number)

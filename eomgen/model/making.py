@@ -9,9 +9,10 @@ from eomgen.errors import ExpressionError, ModelError, Problem
 from eomgen.model.catalog import Catalog, diagnostics_of_one, owner_of
 from eomgen.model.checks.bodies import bodies, numbers
 from eomgen.model.checks.names import equations, formulas, missing_point, names, references, speeds
+from eomgen.model.constraints.held import Limit
 from eomgen.model.diagnostics import Diagnostic, nearest, whereabouts
 from eomgen.model.dimensions import dimensions
-from eomgen.model.fields import Leaf, NameRule, Table, WrittenEquation
+from eomgen.model.fields import Leaf, NameRule, Table, WrittenEquation, in_si
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.base import AXES, SIDES
 from eomgen.model.part import Part, read_part
@@ -292,7 +293,9 @@ Made = TypeVar("Made", bound=Part)
 def draft_of(cls: Any, raw: Mapping[str, Any], title: str, found: list[Diagnostic]) -> Any:
     """A model from the tables of a file, unchecked; what could not be read is None and has a diagnostic."""
     draft = read_part(cls, {"name": title, **raw}, (), found, known=("eomgen",))
-    return draft.altered(bodies=_seated(draft))
+    seated = draft.altered(bodies=_seated(draft))
+    limited = with_limits(seated)
+    return seated.altered(constraints=Table(limited)) if len(limited) > len(draft.constraints or {}) else seated
 
 
 def _seated(model: Any) -> Table[Any]:
@@ -307,6 +310,37 @@ def _seated(model: Any) -> Table[Any]:
         if body is not None and joint is not None and on in points:
             found[name] = body.altered(joint=joint.altered(on=None, at=on))
     return Table(found)
+
+
+def with_limits(model: Any) -> Any:
+    """The model with a constraint for each limit of a joint: arm_low, arm_high; of several variables arm_angle_low."""
+    found = dict(model.constraints or {})
+    for body, part in (model.bodies or {}).items():
+        joint = None if part is None else part.joint
+        for k, field, limits in () if joint is None else joint.limits_of_variables:
+            variable = getattr(joint, field)
+            unit = _unit_of(model, variable)
+            several = f"{body}_{field}" if len(joint.limited) > 1 else body
+            for end in ("low", "high"):
+                bound = getattr(limits, end)
+                if bound is not None:
+                    values = {"body": body, "variable": k, "bound": in_si(bound, unit), "upper": end == "high"}
+                    stop = Limit.of_values({**values, "restitution": joint.restitution})
+                    found[_free_name(f"{several}_{end}", stop, found)] = stop
+    return found
+
+
+def _free_name(name: str, stop: Limit, constraints: Mapping[str, Any]) -> str:
+    """The name, with a line below where another constraint has it."""
+    while name in constraints and not isinstance(constraints[name], Limit):
+        name += "_"
+    return name
+
+
+def _unit_of(model: Any, variable: Expression | None) -> Any:
+    """The declared unit of a coordinate that is a joint's variable; None where there is none."""
+    part = None if variable is None else (model.coordinates or {}).get(variable.text)
+    return None if part is None else part.unit
 
 
 def diagnostics_of(model: Any, found: list[Diagnostic]) -> list[Diagnostic]:
@@ -328,6 +362,7 @@ def finish(model: Any) -> None:
         if raw is not slot.default:
             object.__setattr__(model, slot.name, slot.rule.read(raw, (slot.key,), found))
     object.__setattr__(model, "bodies", _seated(model))
+    object.__setattr__(model, "constraints", Table(with_limits(model)))
     found += diagnostics_of(model, found)
     if found:
         raise ModelError(tuple(Problem(".".join(map(str, f.path)), f.what, fix=f.fix) for f in found))

@@ -83,7 +83,7 @@ class _Seen:
         mode = self.model.watch.mode(contact)
         if not mode.closed:
             return self._least("it is passed through by", self._gap(contact), self._size("places"), "m")
-        normals = self._forces(contact, ("n", "n 1", "n 2", "tension"))
+        normals = self._forces(contact, ("n", "n 1", "n 2", "tension", "couple"))
         pressed = mode.push * normals if contact.unilateral or (mode.sense != 0 and not contact.round) else normals[:0]
         wrong = self._least("it would have to pull by", pressed, self._most, "N")
         if contact.mu is None or wrong:

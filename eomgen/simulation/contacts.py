@@ -33,6 +33,7 @@ from eomgen.symbolic.numeric import FLOAT, evaluate, tolerances
 #     slides:                sense v           on a piece of a path:   the way to each of its ends
 
 
+PRESSING = ("n", "tension", "couple")  # rows of a contact that can only push, or only pull
 STOPPED = Fraction(1, 10**7)  # on a surface [m/s]
 
 
@@ -204,7 +205,7 @@ class ContactEvents:
             found = [self._component(contact.name, "joint", label, 1) for label in labels]
         else:
             mine = [r for r in self.system.constraints.rows if r.constraint == contact.name]
-            found = [self._reaction(r) for r in mine if r.component.partition(" ")[0] in ("n", "tension")]
+            found = [self._reaction(r) for r in mine if r.component.partition(" ")[0] in PRESSING]
         return [_resultant(found)] if contact.round else found
 
     def _reaction(self, row: Row) -> tuple[Scalar, str]:

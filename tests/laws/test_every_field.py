@@ -29,6 +29,8 @@ c = 0.4
 mu = 0.2
 """
 TENSOR = "mass = 'm'\ncenter = [0.1, -0.05, 0.2]\ninertia = [0.3, 0.4, 0.5, 0.02, -0.03, 0.01]\n"
+REBOUNDS = "restitution = 'mu'"
+STOPS = "limits = [-1, 'l'], restitution = 'mu'"
 EFFORTS = "stiffness = 'k', damping = 'c', rest = 0.3, armature = 0.05"
 
 
@@ -146,17 +148,19 @@ y = 0.2
 d = { start = 0.3, speed = 0.5 }
 [bodies.one]
 shape = { kind = "rod", mass = "m", length = "l" }
-joint = { kind = "revolute", at = [0.1, 0.2], point = "end", angle = "q", torque = "2 - q'", EFFORTS }
+joint = { kind = "revolute", at = [0.1, 0.2], point = "end", angle = "q", torque = "2 - q'", STOPS, EFFORTS }
 [bodies.two]
 shape = { kind = "rectangle", mass = "m", width = "l", height = "r" }
-joint = { kind = "prismatic", on = "one.start", axis = [1, 2], displacement = "s", angle = 0.4, force = "t", EFFORTS }
+joint = { kind = "prismatic", on = "one.start", axis = [1, 2], displacement = "s", angle = 0.4, force = "t", ALL }
 [bodies.three]
 shape = { kind = "disc", mass = "m", radius = "r" }
 joint = { kind = "fixed", on = "two", at = ["r", 0], angle = 0.3 }
 [bodies.four]
 shape = { kind = "disc", mass = "m", radius = "r" }
-joint = { kind = "planar", on = "two", x = "x", y = "y", angle = "d" }
-""".replace("EFFORTS", EFFORTS),
+joint = { kind = "planar", on = "two", x = "x", y = "y", angle = "d", limits = { x = [-1, "r"] }, restitution = 0.1 }
+""".replace("ALL", "STOPS, EFFORTS")
+    .replace("EFFORTS", EFFORTS)
+    .replace("STOPS", STOPS),
     "placed": """
 [coordinates]
 q = { start = 0.2, speed = 1 }
@@ -197,16 +201,21 @@ acceleration = [0, -9.81]
     "support": constraint(
         "kind = 'support'\npoint = 'plate.P'\nnormal = [1, 2]\nat = [0.7, 1]\nfriction = 'mu'", free(", speed = 1")
     ),
-    "unilateral": constraint("kind = 'support'\npoint = 'plate.P'\nnormal = [0, 1]\nunilateral = true", free()),
+    "unilateral": constraint(
+        "kind = 'support'\npoint = 'plate.P'\nnormal = [0, 1]\nunilateral = true\n" + REBOUNDS, free()
+    ),
     "clamp": constraint("kind = 'clamp'\npoint = 'plate.P'", free()),
     "welded": constraint("kind = 'clamp'\npoints = ['plate.P', 'drum.M']", free() + DRUM),
     "guide": constraint("kind = 'guide'\npoint = 'plate.P'\nalong = [1, 2]", free()),
     "slider": constraint(
         "kind = 'slider'\npoint = 'drum.M'\non = 'plate'\nfriction = { viscous = 'c' }", free() + DRUM
     ),
-    "pushing slider": constraint("kind = 'slider'\npoint = 'drum.M'\non = 'plate'\nunilateral = true", free() + DRUM),
+    "pushing slider": constraint(
+        "kind = 'slider'\npoint = 'drum.M'\non = 'plate'\nunilateral = true\n" + REBOUNDS, free() + DRUM
+    ),
     "link": constraint(
-        "kind = 'link'\npoints = ['plate.P', 'drum.M']\nlength = 1.26\nunilateral = true", free() + DRUM
+        "kind = 'link'\npoints = ['plate.P', 'drum.M']\nlength = 1.26\nunilateral = true\n" + REBOUNDS,
+        free() + DRUM,
     ),
     "rolling": constraint("kind = 'rolling'\nbody = 'plate'\nline = { at = [0, 0], normal = [-1, 3] }", free()),
     "slipping": constraint(
@@ -215,7 +224,7 @@ acceleration = [0, -9.81]
         free(", speed = 1"),
     ),
     "in a circle": constraint(
-        "kind = 'rolling'\nbody = 'plate'\nunilateral = true\n"
+        "kind = 'rolling'\nbody = 'plate'\nunilateral = true\nrestitution = 'mu'\n"
         "circle = { at = [0, 1.5], radius = 0.765, inside = true }",
         free(),
     ),
@@ -223,7 +232,7 @@ acceleration = [0, -9.81]
     "skate": constraint("kind = 'skate'\npoint = 'plate.P'\nalong = [1, 0.2]", free()),
     "string": constraint(
         "kind = 'string'\npath = ['plate.P', { at = [0.5, 2], radius = 0.1, turn = 'cw', slip = true }, "
-        "{ body = 'drum', turn = 'cw' }]\nunilateral = true",
+        "{ body = 'drum', turn = 'cw' }]\nunilateral = true\n" + REBOUNDS,
         free() + DRUM,
     ),
     "straight strands": constraint(
@@ -255,12 +264,12 @@ SPACE = {
     ),
     "cylindrical": jointed(
         f'kind = "cylindrical", {SEAT}, axis = [1, -2, "l"], displacement = "a", angle = "b", '
-        'force = "-c*a\'", torque = "t"',
+        'force = "-c*a\'", torque = "t", limits = { displacement = [-1, 2], angle = ["-inf", 3] }, restitution = "mu"',
         "a",
         "b",
     ),
     "screw": jointed(
-        f'kind = "screw", {SEAT}, axis = [1, -2, 2], angle = "a", pitch = 0.15, torque = "t", {EFFORTS}', "a"
+        f'kind = "screw", {SEAT}, axis = [1, -2, 2], angle = "a", pitch = 0.15, torque = "t", {STOPS}, {EFFORTS}', "a"
     ),
     "universal": jointed(f'kind = "universal", {SEAT}, axes = [[1, 0, 0.2], [0, 1, 0]], angles = ["a", "b"]', "a", "b"),
     "planar": jointed(f'kind = "planar", {SEAT}, x = "a", y = "b", angle = "d"', "a", "b", "d"),

@@ -416,7 +416,7 @@ def pulling_contacts(system: System, state: Mapping[Node, Scalar], values: Mappi
         return ()
     found = []
     for j, component in enumerate(reactions.components):
-        if component.owner in names and component.label in ("n", "tension"):
+        if component.owner in names and component.label in ("n", "tension", "couple"):
             try:
                 value = reactions.value(j)
             except Indeterminate:

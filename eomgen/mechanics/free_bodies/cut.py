@@ -15,7 +15,7 @@ from dataclasses import field, replace
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies.balance import Balance
-from eomgen.mechanics.free_bodies.names_of_reactions import OWN
+from eomgen.mechanics.free_bodies.names_of_reactions import is_named_alone
 from eomgen.mechanics.free_bodies.wrenches import (
     Axes,
     Component,
@@ -23,9 +23,8 @@ from eomgen.mechanics.free_bodies.wrenches import (
     effects_at_joint,
     efforts_of,
     rotors_of,
-    scaled_axes,
 )
-from eomgen.mechanics.kinematics import BodyLink, JointEffort
+from eomgen.mechanics.kinematics import BodyLink, JointEffort, pushed_along
 from eomgen.model import Couple, Element, PointForce, UniformField
 from eomgen.symbolic.expression import Matrix, Scalar, Vector, is_zero, substituted
 
@@ -168,7 +167,7 @@ def _efforts(balance: Balance) -> Iterator[CutForce]:
         for effort in (effort for effort in system.loads.efforts if effort.body == link.name):
             for kind, size in _shares_of(system, link, effort):
                 if not is_zero(size):
-                    effects = effects_at_joint(axes, link, *scaled_axes(axes, link.name, effort.variable, size))
+                    effects = effects_at_joint(axes, link, *pushed_along(link, effort.variable, size))
                     yield from _given(axes, effects, f"{kind}({link.name})", kind)
         yield from _given(axes, rotors_of(axes, link), f"rotor({link.name})", ForceKind.INERTIA)
 
@@ -200,7 +199,7 @@ def _reactions(balance: Balance) -> Iterator[CutForce]:
 def _is_apart(balance: Balance, c: Component) -> bool:
     """True if outputs name a component as it is."""
     plane = balance.system.scope.model.space == "plane"
-    return c.kind != "drive" and (c.label in OWN or (plane and not c.is_wrench))
+    return c.kind != "drive" and (is_named_alone(balance, c) or (plane and not c.is_wrench))
 
 
 def _is_whole(balance: Balance, owner: str) -> bool:
@@ -225,7 +224,7 @@ def _has_sense(balance: Balance, c: Component) -> bool:
     constraint = balance.system.scope.model.constraints.get(c.owner)
     if constraint is None or c.kind == "drive":
         return False
-    one_sided = c.label == "n" and bool(getattr(constraint, "unilateral", False))
+    one_sided = c.label in ("n", "couple") and bool(getattr(constraint, "unilateral", False))
     return one_sided or (c.label == "tension" and bool(constraint.strand_rows()))
 
 

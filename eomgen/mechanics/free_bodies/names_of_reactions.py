@@ -49,13 +49,21 @@ def named_reactions(balance: Balance) -> tuple[NamedReaction, ...]:
     return tuple(named for owner in owners for named in _of_owner(balance, owner))
 
 
+def is_named_alone(balance: Balance, c: Component) -> bool:
+    """True if outputs name a component as it is, in space too: of a hinge's stop the couple about its axis."""
+    constraint = balance.system.scope.model.constraints.get(c.owner) if c.kind == "constraint" else None
+    return c.label in OWN or (constraint is not None and constraint.about_joint)
+
+
 def _of_owner(balance: Balance, owner: str) -> Iterable[NamedReaction]:
     mine = [(j, c) for j, c in enumerate(balance.components) if c.owner == owner]
     constraints = [(j, c) for j, c in mine if c.kind != "drive"]
     plane = balance.system.scope.model.space == "plane"
     wrenches = any(c.is_wrench for _, c in constraints)
     apart = [
-        (j, c) for j, c in constraints if c.label in OWN or (plane and c.label not in ("x", "y") and not c.is_wrench)
+        (j, c)
+        for j, c in constraints
+        if is_named_alone(balance, c) or (plane and c.label not in ("x", "y") and not c.is_wrench)
     ]
     if len(apart) < len(constraints):
         along = (0, 1) if plane else (0, 1, 2)

@@ -183,7 +183,7 @@ class Reactions:
         return mode is not None and not mode.closed
 
     def normal(self, owner: str) -> Scalar:
-        """The normal reaction, positive along the constraint's normal; friction is not in it.
+        """The normal reaction, positive along the constraint's normal; without friction; of a hinge's stop a couple.
 
         Of a bilateral contact on a line in space sqrt(N_1^2 + N_2^2).
         """
@@ -195,7 +195,8 @@ class Reactions:
         several = [j for j, c in enumerate(self.components) if c.owner == owner and c.label.startswith("n ")]
         if several:
             return sqrt(sum((x * x for x in map(self.value, several)), start=0))
-        return self._labelled(owner, "n", "normal reaction")
+        labels = {c.label for c in self.components if c.owner == owner and c.kind == "constraint"}
+        return self._labelled(owner, "couple" if labels == {"couple"} else "n", "normal reaction")
 
     def friction(self, owner: str, along: str = "t") -> Scalar:
         """Friction, sliding or sticking: the force along the contact, positive along the normal turned clockwise.

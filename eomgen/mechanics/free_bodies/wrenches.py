@@ -17,6 +17,7 @@ from eomgen.mechanics.kinematics import (
     ContactMode,
     JointEffort,
     Motion,
+    pushed_along,
 )
 from eomgen.model import Couple, MassProperties, PointForce
 from eomgen.symbolic.expression import (
@@ -156,50 +157,18 @@ def rotors_of(axes: Axes, link: BodyLink) -> list[Effect]:
     effects: list[Effect] = []
     for k, armature in _armatures(axes.motion, link):
         rate = axes.motion.scope.with_accelerations((link.s_rate[k],))[0]
-        effects += effects_at_joint(axes, link, *scaled_axes(axes, link.name, k, -armature * rate))
+        effects += effects_at_joint(axes, link, *pushed_along(link, k, -armature * rate))
     return effects
 
 
 def _effort_effects(axes: Axes, effort: JointEffort) -> list[Effect]:
     link = axes.motion.link(effort.body)
-    return effects_at_joint(axes, link, *scaled_axes(axes, effort.body, effort.variable, effort.effort))
+    return effects_at_joint(axes, link, *pushed_along(link, effort.variable, effort.effort))
 
 
 def _armatures(motion: Motion, link: BodyLink) -> list[tuple[int, Scalar]]:
     efforts = () if link.joint is None else link.joint.efforts()
     return [(k, motion.scope.value(e.armature)) for k, e in enumerate(efforts) if e is not None and e.armature]
-
-
-def scaled_axes(axes: Axes, body: str, variable: int, magnitude: Scalar) -> tuple[Vector, Vector]:
-    """(force, couple) along a joint's variable that do the work magnitude * s', child's axes, and none on its others.
-
-    They lie in the span of the joint's axes: d_k . S_j = 1 of j = k, else 0.
-    """
-    w, v = axes.motion.link(body).S[variable]
-    turning = not all(is_zero(x) for x in w)
-    others = [
-        column[0 if turning else 1]
-        for j, column in enumerate(axes.motion.link(body).S)
-        if j != variable and turning != all(is_zero(x) for x in column[0])
-    ]
-    push = _without_work(magnitude, w if turning else v, others)
-    return (Vector.ZERO, push) if turning else (push, Vector.ZERO)
-
-
-def _without_work(magnitude: Scalar, n: Vector, others: Sequence[Vector]) -> Vector:
-    """The vector d in the span of n and the others with d . n = magnitude that is normal to the others."""
-    if all(is_zero(n @ other) for other in others):
-        return _over(magnitude, n @ n) * n
-    if len(others) == 1:
-        (other,) = others
-        d = other @ other * n - n @ other * other
-    else:
-        d = others[0].cross(others[1])
-    return _over(magnitude, n @ d) * d
-
-
-def _over(magnitude: Scalar, square: Scalar) -> Scalar:
-    return magnitude if type(square) is int and square == 1 else over(magnitude, square)
 
 
 # -------- components ------------------------------------------------------------------------------------------
@@ -295,7 +264,7 @@ def _joint_components(system: System, axes: Axes) -> list[Component]:
             continue
         pushes = _basis(axes, link, system)
         factor = joint_friction(system, link)
-        along = () if factor is None else tuple(effects_at_joint(axes, link, *scaled_axes(axes, link.name, 0, 1)))
+        along = () if factor is None else tuple(effects_at_joint(axes, link, *pushed_along(link, 0, 1)))
         for number, (label, force, couple) in enumerate(pushes, start=1):
             effects = tuple(effects_at_joint(axes, link, force, couple))
             friction = (FrictionShare("t", factor, along),) if label == "n" and factor is not None else ()
@@ -304,7 +273,7 @@ def _joint_components(system: System, axes: Axes) -> list[Component]:
             found.append(Component(link.name, "joint", "t", len(pushes) + 1, along, bilateral_friction=factor))
         for k in range(len(link.s)):
             if (driver := driven.get((link.name, k))) is not None:
-                effects = tuple(effects_at_joint(axes, link, *scaled_axes(axes, link.name, k, 1)))
+                effects = tuple(effects_at_joint(axes, link, *pushed_along(link, k, 1)))
                 found.append(Component(link.name, "drive", "drive", k + 1, effects, (), driver))
     return found
 
@@ -607,7 +576,7 @@ def _along(axes: Axes, link: BodyLink, way: SparseRow) -> list[Effect]:
     """Effects of the wrench sum c_k d_k."""
     force, couple = Vector.ZERO, Vector.ZERO
     for k, c in way.items():
-        f, n = scaled_axes(axes, link.name, k, c)
+        f, n = pushed_along(link, k, c)
         force, couple = force + f, couple + n
     return effects_at_joint(axes, link, force, couple)
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from eomgen.errors import DerivationError, ModelError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.kinematics.motion import GROUND, Motion
+from eomgen.mechanics.kinematics.motion import GROUND, BodyLink, Motion
 from eomgen.mechanics.kinematics.symbols import parameters_of_zero, primitive
 from eomgen.model import (
     BodyPoint,
@@ -27,10 +27,46 @@ from eomgen.symbolic.expression import (
     function,
     gradient,
     is_zero,
+    over,
     substituted,
     symbols_of,
 )
 from eomgen.symbolic.numeric import FLOAT, Work, evaluate
+
+# -------- pushes along joints ---------------------------------------------------------------------------------
+
+
+def pushed_along(link: BodyLink, variable: int, magnitude: Scalar) -> tuple[Vector, Vector]:
+    """(force, couple) along a joint's variable that do the work magnitude * s', child's axes, and none on its others.
+
+    They lie in the span of the joint's axes: d_k . S_j = 1 of j = k, else 0.
+    """
+    w, v = link.S[variable]
+    turning = not all(is_zero(x) for x in w)
+    others = [
+        column[0 if turning else 1]
+        for j, column in enumerate(link.S)
+        if j != variable and turning != all(is_zero(x) for x in column[0])
+    ]
+    push = _without_work(magnitude, w if turning else v, others)
+    return (Vector.ZERO, push) if turning else (push, Vector.ZERO)
+
+
+def _without_work(magnitude: Scalar, n: Vector, others: Sequence[Vector]) -> Vector:
+    """The vector d in the span of n and the others with d . n = magnitude that is normal to the others."""
+    if all(is_zero(n @ other) for other in others):
+        return _over(magnitude, n @ n) * n
+    if len(others) == 1:
+        (other,) = others
+        d = other @ other * n - n @ other * other
+    else:
+        d = others[0].cross(others[1])
+    return _over(magnitude, n @ d) * d
+
+
+def _over(magnitude: Scalar, square: Scalar) -> Scalar:
+    return magnitude if type(square) is int and square == 1 else over(magnitude, square)
+
 
 # -------- system scene ----------------------------------------------------------------------------------------
 # Motion -> SystemScene: what force laws and constraints ask of a system; where coordinates start.
@@ -157,6 +193,19 @@ class SystemScene:
             )
         parent = None if link.parent == GROUND else self.motion.links[link.parent].name
         return *turning[0], parent
+
+    def along_joint(self, body: str, variable: int) -> tuple[Scalar, Vector, Vector, BodyPoint, BodyPoint, Vector]:
+        """(s, force and couple of the unit push along it on the body, where on it, a place of its parent, the arm
+        from there), of a variable of the body's joint, ground axes."""
+        link = self.motion.link(body)
+        force, couple = pushed_along(link, variable, 1)
+        R, (seat, slid) = link.pose.R, (link.before.p, link.local.p)
+        name, R_parent = None, Matrix.IDENTITY
+        if link.parent != GROUND:
+            parent = self.motion.links[link.parent]
+            name, R_parent = parent.name, parent.pose.R
+        arm = R_parent @ (slid - seat)
+        return link.s[variable], R @ force, R @ couple, (body, link.point), (name, seat), arm
 
     def masses(self, bodies: tuple[str, ...] | None) -> tuple[tuple[BodyPoint, Scalar], ...]:
         """(mass centre, mass) of the named bodies, or of all, that have mass."""

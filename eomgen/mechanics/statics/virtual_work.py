@@ -319,6 +319,8 @@ class StaticReactions:
         for contact in self.system.scope.model.contacts:
             name = contact.name
             normal, pull = (_value(self, f"{kind}({name})") for kind in ("reaction_n", "tension"))
+            if contact.unilateral and normal is None and pull is None:  # the stop of a hinge
+                normal = _value(self, f"reaction_couple({name})")
             along = _resultant([_value(self, f"reaction_{k}({name})") for k in ("ts" if contact.surface else "t")])
             if contact.round:  # of all that it carries the part across its line
                 whole = _resultant([_value(self, f"reaction_{axis}({name})") for axis in "xyz"])

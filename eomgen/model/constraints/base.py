@@ -131,6 +131,7 @@ class Constraint(Part, ABC):
     spaces: ClassVar[tuple[str, ...]] = ("plane", "space")
     one_of: ClassVar[tuple[str, ...]] = ()  # of these fields exactly one is given
     holds_ground: ClassVar[bool] = False  # its point may be one of the ground
+    about_joint: ClassVar[bool] = False  # it pushes along a joint's variable
     pulls: ClassVar[bool] = False  # a wire, which goes slack; anything else opens
     by_squares: ClassVar[bool] = False  # its gap, of squares, is a length to first order only
     on_line: ClassVar[bool] = False  # in space it holds its point from all sides of a line

@@ -1,4 +1,4 @@
-"""Supports, sliders, guides, clamps and knife edges."""
+"""Supports, sliders, guides, clamps, knife edges, and stops of joints."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -13,13 +13,14 @@ from eomgen.model.constraints.plane import Touch, left, opposite, same_turn
 from eomgen.model.constraints.rolling import complement, laid_in
 from eomgen.model.constraints.row import ConstraintRow, direction_of, normals_of
 from eomgen.model.diagnostics import Diagnostic
-from eomgen.model.forces.load import LoadContext, PointForce
+from eomgen.model.forces.load import Couple, LoadContext, PointForce, Push
 from eomgen.model.kinds import (
     BodyName,
     Direction,
     Flag,
     FrictionLaw,
     GroundPlace,
+    Kept,
     PointName,
     Points,
     Restitution,
@@ -280,3 +281,62 @@ class Skate(Constraint):
         d = along if place[0] is None else scene.orientation(place[0]) @ along
         n = over(1, complement(scene, e @ d)) * e.cross(d)
         return (ConstraintRow((PointForce(place, n),), None, component="n"),)
+
+
+# -------- limit -----------------------------------------------------------------------------------------------
+# Limit: a rigid stop of a joint's variable.
+
+
+@dataclass(frozen=True, kw_only=True)
+class Limit(Constraint):
+    """A rigid stop of a joint: its variable does not pass a bound. The `limits` of joints make them.
+
+    One row: the couple or force along the joint, on the body, away from the bound, and its opposite on the parent.
+
+    Args:
+        body: whose joint it is.
+        variable: number of the joint's variable.
+        bound: which it does not pass [rad or m].
+        upper: True: from below.
+        restitution: of the joint.
+    """
+
+    kind: ClassVar[str] = "limit"
+    unilateral: ClassVar[bool] = True
+    about_joint: ClassVar[bool] = True
+    body: BodyName
+    variable: Kept
+    bound: Kept
+    upper: Flag = False
+    restitution: Kept | None = None
+
+    def diagnostics(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
+        """Diagnostics of limits that are crossed, and of those of a joint that a motion drives."""
+        joint = catalog.table("bodies")[self.body].joint
+        where = ("bodies", self.body, "joint", "limits")
+        ((field, limits),) = ((name, x) for k, name, x in joint.limits_of_variables if k == self.variable)
+        low, high = (None if x is None else x.literal for x in (limits.low, limits.high))
+        if not self.upper and low is not None and high is not None and not low < high:
+            yield Diagnostic(
+                where, f"the limits of '{self.body}' leave nothing between {low} and {high}", "least first"
+            )
+        driven = catalog.model.driven_coordinates & getattr(joint, field).names
+        if driven and (self.upper or limits.low is None or limits.high is None):
+            what = f"'{min(driven)}' is driven: no stop can hold the joint of '{self.body}' where its motion leads on"
+            yield Diagnostic(where, what, "leave out the limits, or the motion")
+
+    def rows(self, scene: LoadContext) -> tuple[ConstraintRow, ...]:
+        """s - bound >= 0, of an upper one bound - s >= 0; the push along the joint does the work of a unit times s'."""
+        sense = -1 if self.upper else 1
+        s, force, couple, child, parent, arm = scene.along_joint(self.body, self.variable)
+        gap = sense * (s - scene.value(self.bound))
+        force, couple = sense * force, sense * couple
+        pushes: tuple[Push, ...] = () if _is_none(force) else opposite(Touch(child), Touch(parent, arm), force)
+        if not _is_none(couple):
+            turned = ((child, couple), (parent, -couple))
+            pushes += tuple(Couple(at[0], c, place=at) for at, c in turned if at[0] is not None)
+        return (ConstraintRow(pushes, gap, component="n" if _is_none(couple) else "couple"),)
+
+
+def _is_none(vector: Vector) -> bool:
+    return all(type(x) is int and x == 0 for x in vector)

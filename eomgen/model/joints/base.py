@@ -17,6 +17,7 @@ from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.fields import ListRule
 from eomgen.model.kinds import (
     ConstantAngle,
+    Limits,
     MovingGroundPlace,
     OwnPointName,
     ReactionSymbolsField,
@@ -148,6 +149,7 @@ class Joint(Part):
     only_space: ClassVar[bool] = False
     carries_reaction: ClassVar[bool] = True
     straight: ClassVar[bool] = True  # what slides in it keeps its direction
+    limited: ClassVar[tuple[str, ...]] = ()  # the fields of its variables that may have limits, in their order
     seated: ClassVar[bool] = True  # `at` is where the joint sits; else it is among the variables
 
     on: SeatName | None = None
@@ -155,6 +157,16 @@ class Joint(Part):
     point: OwnPointName | None = None
     turned: Turns | None = None
     symbol: ReactionSymbolsField | None = None
+
+    @property
+    def limits_of_variables(self) -> tuple[tuple[int, str, Limits], ...]:
+        """(number of the variable, its field, its limits) of each variable with limits."""
+        given = getattr(self, "limits", None)
+        if given is None:
+            return ()
+        each = (given,) if isinstance(given, Limits) else (getattr(given, name) for name in self.limited)
+        pairs = zip(self.limited, each, strict=True)
+        return tuple((k, name, limits) for k, (name, limits) in enumerate(pairs) if limits is not None)
 
     @property
     def parent(self) -> str | None:

@@ -37,7 +37,8 @@ from eomgen.model.joints.base import (
     unit,
     vector,
 )
-from eomgen.model.kinds import Angle, ConstantAngle, Displacement, SpaceDirection, ValueOf
+from eomgen.model.kinds import Angle, ConstantAngle, Displacement, PlanarLimits, Restitution, SpaceDirection, ValueOf
+from eomgen.model.part import PartRule
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression import Expression, Matrix, Pose, Vector, as_expression, cos, sin
 
@@ -193,12 +194,17 @@ class Planar(Joint):
     Args:
         x, y: of `point` in the turned axes [m].
         angle: of the child against the parent [rad].
+        limits: rigid stops: { x = [least, largest], y = ..., angle = ... }, "inf" for none.
+        restitution: of the stops: with this share of its speed it rebounds, 0 to 1 (None: not at all).
     """
 
+    limited: ClassVar[tuple[str, ...]] = ("x", "y", "angle")
     kind: ClassVar[str] = "planar"
     x: Displacement
     y: Displacement
     angle: Angle
+    limits: Annotated[PlanarLimits, PartRule(PlanarLimits)] | None = None
+    restitution: Restitution | None = None
 
     def turns(self) -> tuple[Expression, ...]:
         return (self.angle,)

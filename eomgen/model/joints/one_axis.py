@@ -25,6 +25,7 @@ from eomgen.model.joints.base import (
 )
 from eomgen.model.kinds import (
     Angle,
+    AngleLimits,
     AngularDamping,
     AngularStiffness,
     ConstantAngle,
@@ -34,13 +35,17 @@ from eomgen.model.kinds import (
     LinearDamping,
     LinearStiffness,
     RestAngle,
+    Restitution,
     RestLength,
     RotorInertia,
+    SleeveLimits,
     SlideInertia,
+    SlideLimits,
     SpaceDirection,
     Torque,
     ValueOf,
 )
+from eomgen.model.part import PartRule
 from eomgen.symbolic.expression import Expression, Matrix, Pose, Vector, cos, sin
 
 # -------- axis ------------------------------------------------------------------------------------------------
@@ -114,8 +119,11 @@ class Revolute(AxisJoint):
         axis: in the turned axes; need not have unit length; None: z.
         torque: on the child, minus on the parent [N m].
         stiffness, damping, rest, armature: - k (s - rest), - d s', and armature s'^2 / 2 to T.
+        limits: [least, largest] of the angle, "inf" for none: rigid stops, in the unit of its coordinate.
+        restitution: of the stops: with this share of its speed it rebounds, 0 to 1 (None: not at all).
     """
 
+    limited: ClassVar[tuple[str, ...]] = ("angle",)
     kind: ClassVar[str] = "revolute"
     angle: Angle
     axis: SpaceDirection | None = None
@@ -124,6 +132,8 @@ class Revolute(AxisJoint):
     damping: AngularDamping | None = None
     rest: RestAngle | None = None
     armature: RotorInertia | None = None
+    limits: AngleLimits | None = None
+    restitution: Restitution | None = None
 
     def turns(self) -> tuple[Expression, ...]:
         return (self.angle,)
@@ -172,8 +182,11 @@ class Prismatic(AxisJoint):
         angle: the constant angle of the child's axes (about z in the plane, about n in space) [rad].
         force: on the child, minus on the parent [N].
         stiffness, damping, rest, armature: - k (s - rest), - d s', and armature s'^2 / 2 to T.
+        limits: [least, largest] of the displacement, "inf" for none: rigid stops, in the unit of its coordinate.
+        restitution: of the stops: with this share of its speed it rebounds, 0 to 1 (None: not at all).
     """
 
+    limited: ClassVar[tuple[str, ...]] = ("displacement",)
     kind: ClassVar[str] = "prismatic"
     axis: Direction
     displacement: Displacement
@@ -183,6 +196,8 @@ class Prismatic(AxisJoint):
     damping: LinearDamping | None = None
     rest: RestLength | None = None
     armature: SlideInertia | None = None
+    limits: SlideLimits | None = None
+    restitution: Restitution | None = None
 
     def turns(self) -> tuple[Expression, ...]:
         return ()
@@ -237,8 +252,14 @@ class Cylindrical(AxisJoint):
         axis: n, in the turned axes; need not have unit length; None: z.
         displacement, angle: along n [m] and about it [rad].
         force, torque: along n and about it on the child, minus on the parent [N, N m].
+        limits: rigid stops: { displacement = [least, largest], angle = [least, largest] }.
+        restitution: of the stops: with this share of its speed it rebounds, 0 to 1 (None: not at all).
     """
 
+    limited: ClassVar[tuple[str, ...]] = (
+        "displacement",
+        "angle",
+    )
     kind: ClassVar[str] = "cylindrical"
     only_space: ClassVar[bool] = True
     axis: SpaceDirection | None = None
@@ -246,6 +267,8 @@ class Cylindrical(AxisJoint):
     angle: Angle
     force: ForceFormula | None = None
     torque: Torque | None = None
+    limits: Annotated[SleeveLimits, PartRule(SleeveLimits)] | None = None
+    restitution: Restitution | None = None
 
     def turns(self) -> tuple[Expression, ...]:
         return (self.angle,)
@@ -291,8 +314,11 @@ class Screw(AxisJoint):
         pitch: h, advance per radian [m].
         torque: about n on the child, minus on the parent [N m].
         stiffness, damping, rest, armature: - k (s - rest), - d s', and armature s'^2 / 2 to T.
+        limits: [least, largest] of the angle, "inf" for none: rigid stops, in the unit of its coordinate.
+        restitution: of the stops: with this share of its speed it rebounds, 0 to 1 (None: not at all).
     """
 
+    limited: ClassVar[tuple[str, ...]] = ("angle",)
     kind: ClassVar[str] = "screw"
     only_space: ClassVar[bool] = True
     axis: SpaceDirection | None = None
@@ -303,6 +329,8 @@ class Screw(AxisJoint):
     damping: AngularDamping | None = None
     rest: RestAngle | None = None
     armature: RotorInertia | None = None
+    limits: AngleLimits | None = None
+    restitution: Restitution | None = None
 
     def turns(self) -> tuple[Expression, ...]:
         return (self.angle,)

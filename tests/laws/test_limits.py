@@ -1,0 +1,179 @@
+"""Limits of joints: rigid stops that can only push, with restitution."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import eomgen
+from eomgen.errors import ModelError
+
+G = 9.81
+PENDULUM = """
+eomgen = 1
+space = "plane"
+parameters = { m = 1, g = 9.81, l = 1, lo = -0.3, e = 0.5 }
+forces.weight = { kind = "gravity", acceleration = [0, "-g"] }
+coordinates = { q = { start = 60, unit = "deg" } }
+[bodies.rod]
+shape = { kind = "rod", mass = "m", length = "l" }
+[bodies.rod.joint]
+kind = "revolute"
+angle = "q"
+point = "rod.start"
+turned = { angle = "-pi/2" }
+limits = ["lo", 90]
+restitution = "e"
+"""
+
+
+def run(text: str, time: float, **options):
+    return eomgen.simulate(eomgen.loads(text), time=time, target="numpy", **options)
+
+
+@pytest.mark.slow
+def test_a_pendulum_rebounds_from_the_stop_of_its_hinge():
+    """I q'' = -m g (l/2) sin q up to q = lo, then q' = -e q'; the impulse is I (1 + e) |q'|, I = m l^2/3."""
+
+    def rate(t, x):
+        return [x[1], -1.5 * G * math.sin(x[0])]
+
+    def stop(t, x):
+        return x[0] + 0.3
+
+    stop.terminal, stop.direction = True, -1
+    t, x, times = 0.0, [math.pi / 3, 0.0], []
+    for _ in range(2):
+        found = solve_ivp(rate, (t, 9), x, events=stop, rtol=1e-13, atol=1e-13)
+        t, x = found.t[-1], [-0.3, -0.5 * found.y[1, -1]]
+        times.append((t, -found.y[1, -1]))
+    result = run(PENDULUM, 2)
+    assert [impact.t for impact in result.impacts] == pytest.approx([t for t, _ in times], abs=1e-8)
+    assert [i.impulses["rod_low"] for i in result.impacts] == pytest.approx([v * 0.5 for _, v in times], rel=1e-7)
+    assert [i.loss for i in result.impacts] == pytest.approx([v * v * 0.75 / 6 for _, v in times], rel=1e-7)
+    assert result.certify().ok
+
+
+def test_a_plain_number_is_in_the_unit_of_the_coordinate():
+    """limits = [.., 90] of q in degrees: pi/2; expressions are in SI."""
+    low, high = eomgen.loads(PENDULUM).constraints.values()
+    assert high.bound.value_at({"pi": math.pi}) == pytest.approx(math.pi / 2) and low.bound.text == "lo"
+
+
+CARTS = """
+eomgen = 1
+space = "plane"
+parameters = { m1 = 2, m2 = 1, e = 0.5 }
+coordinates = { x = {}, d = { start = 0.5, speed = -1 } }
+[bodies.big]
+mass = "m1"
+joint = { kind = "prismatic", axis = [1, 0], displacement = "x" }
+[bodies.small]
+mass = "m2"
+[bodies.small.joint]
+kind = "prismatic"
+on = "big"
+axis = [1, 0]
+displacement = "d"
+limits = [0, 1]
+restitution = "e"
+"""
+
+
+def test_a_stop_between_two_bodies_keeps_their_momentum():
+    """d' = -e d', m1 x' + m2 (x' + d') stays; the impulse m1 m2/(m1 + m2) (1 + e) v; at the other end (1 + e) e v."""
+    result = run(CARTS, 3)
+    low, high = result.impacts[:2]
+    assert (low.contact, high.contact) == ("small_low", "small_high")
+    assert low.t == pytest.approx(0.5) and high.t == pytest.approx(0.5 + 1 / 0.5)
+    assert low.impulses["small_low"] == pytest.approx(2 / 3 * 1.5)
+    assert high.impulses["small_high"] == pytest.approx(2 / 3 * 0.75)
+    assert low.loss == pytest.approx(2 / 3 * 0.75 / 2)
+    P = 3 * result["x'"] + result["d'"]
+    assert pytest.approx(np.full(len(P), -1.0)) == P
+    assert result.certify().ok
+
+
+def test_a_stop_without_restitution_holds_and_lets_go():
+    """A mass on a spring against a wall at -1/2: it stays there, the spring pulls it to the wall no more than k/2."""
+    text = CARTS.replace('restitution = "e"\n', "").replace(
+        "limits = [0, 1]", 'limits = [0, "inf"]\nstiffness = 4\nrest = 0.25'
+    )
+    text = text.replace("e = 0.5", "e = 0").replace(", e = 0", "")
+    result = run(text, 1.0)
+    first = result.impacts[0]
+    assert first.contact == "small_low" and first.impulses["small_low"] == pytest.approx(2 / 3, rel=1e-8)
+    assert result.phases[-1].model.configuration.open == ("small_low",)
+
+
+def test_a_planar_joint_has_limits_of_each_variable():
+    """x and angle of one body: each rebounds alone, as the mass centre is the joint's point."""
+    text = """
+eomgen = 1
+space = "plane"
+parameters = { m = 2, J = 0.3 }
+coordinates = { x = { speed = 1 }, y = {}, phi = { speed = -2 } }
+[bodies.disc]
+mass = "m"
+inertia = "J"
+[bodies.disc.joint]
+kind = "planar"
+x = "x"
+y = "y"
+angle = "phi"
+limits = { x = ["-inf", 0.5], angle = [-0.4, "inf"] }
+restitution = 1
+"""
+    result = run(text, 1)
+    assert [(i.contact, i.t) for i in result.impacts] == [
+        ("disc_angle_low", pytest.approx(0.2)),
+        ("disc_x_high", pytest.approx(0.5)),
+    ]
+    assert result.impacts[0].impulses["disc_angle_low"] == pytest.approx(1.2)
+    assert result.impacts[1].impulses["disc_x_high"] == pytest.approx(4)
+    assert (result["x"][-1], result["phi"][-1]) == pytest.approx((0.0, 1.2))
+
+
+SPACE = """
+eomgen = 1
+space = "space"
+parameters = { m = 1, g = 9.81 }
+forces.weight = { kind = "gravity", acceleration = [0, 0, "-g"] }
+coordinates = { a = { speed = 2 }, b = { start = 0.8 } }
+[bodies.mast]
+mass = "m"
+inertia = [0.2, 0.2, 0.1]
+joint = { kind = "revolute", angle = "a" }
+[bodies.arm]
+mass = "m"
+center = [0.5, 0, 0.1]
+inertia = [0.02, 0.1, 0.1]
+[bodies.arm.joint]
+kind = "revolute"
+on = "mast"
+at = [0.2, 0, 1]
+axis = [0, -1, 0]
+angle = "b"
+limits = [-0.5, "inf"]
+restitution = 0.3
+"""
+
+
+@pytest.mark.slow
+def test_a_stop_in_space_pushes_both_bodies_of_its_joint():
+    """b' = -0.3 b', and the angular momentum about the mast's axis stays as it is: proven by momenta of the bodies."""
+    result = run(SPACE, 1)
+    assert result.impacts[0].contact == "arm_low"
+    before, after = result.phases[0].last, result.phases[1].first
+    assert after["b'"] == pytest.approx(-0.3 * before["b'"], rel=1e-9)
+    assert result.certify().ok
+
+
+def test_limits_that_leave_nothing_and_stops_of_driven_joints_are_refused():
+    with pytest.raises(ModelError, match="leave nothing between 1 and 0"):
+        eomgen.loads(CARTS.replace("limits = [0, 1]", "limits = [1, 0]"))
+    with pytest.raises(ModelError, match="'d' is driven"):
+        eomgen.loads(CARTS.replace("d = { start = 0.5, speed = -1 }", 'd = { motion = "t" }'))
