@@ -242,7 +242,7 @@ class LimitsRule:
 
 
 @dataclass(frozen=True)
-class KeptRule:
+class FromFieldRule:
     """A value that another field declares: it is checked there."""
 
     def read(self, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> Any:
@@ -257,7 +257,7 @@ class KeptRule:
 
 AngleLimits = Annotated[Limits, LimitsRule(FormulaRule("rad", in_own_unit=True))]
 SlideLimits = Annotated[Limits, LimitsRule(FormulaRule("m", in_own_unit=True))]
-Kept = Annotated[Any, KeptRule()]
+FromField = Annotated[Any, FromFieldRule()]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -19,8 +19,8 @@ from eomgen.model.kinds import (
     Direction,
     Flag,
     FrictionLaw,
+    FromField,
     GroundPlace,
-    Kept,
     PointName,
     Points,
     Restitution,
@@ -305,10 +305,10 @@ class Limit(Constraint):
     unilateral: ClassVar[bool] = True
     about_joint: ClassVar[bool] = True
     body: BodyName
-    variable: Kept
-    bound: Kept
+    variable: FromField
+    bound: FromField
     upper: Flag = False
-    restitution: Kept | None = None
+    restitution: FromField | None = None
 
     def diagnostics(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
         """Diagnostics of limits that are crossed, and of those of a joint that a motion drives."""
