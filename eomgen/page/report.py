@@ -459,7 +459,8 @@ def replaced(subject: Subject) -> dict[str, dict[str, str]]:
     """The parameters and starts of the model that its text has otherwise, as expressions in SI."""
     if not subject.source:
         return {}
-    own, model = loads(subject.source), subject.model
+    model = subject.model
+    own = loads(subject.source) if model.repeat is None else loads(subject.source, model.repeat.name)
     parameters = _other(own.parameters, model.parameters, "value")
     starts = _other(own.coordinates, model.coordinates, "start") | _other(own.speeds, model.speeds, "start")
     starts |= {f"{name}'": text for name, text in _other(own.coordinates, model.coordinates, "speed").items()}

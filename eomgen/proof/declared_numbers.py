@@ -24,8 +24,8 @@ from eomgen.symbolic.numeric import tolerances
 SIZES = {  # of one of it, in SI
     **{"1": 1, "m": 1, "km": 1e3, "dm": 0.1, "cm": 0.01, "mm": 1e-3, "kg": 1, "g": 1e-3, "t": 1e3, "s": 1, "ms": 1e-3},
     **{"min": 60, "h": 3600, "N": 1, "kN": 1e3, "J": 1, "W": 1, "kW": 1e3, "Pa": 1, "MPa": 1e6, "GPa": 1e9, "rad": 1},
-    **{"bar": 1e5, "l": 1e-3, "ml": 1e-6, "A": 1, "mA": 1e-3, "V": 1, "mV": 1e-3, "kV": 1e3, "ohm": 1, "kohm": 1e3},
-    **{"H": 1, "mH": 1e-3, "uH": 1e-6, "F": 1, "mF": 1e-3, "uF": 1e-6, "Wb": 1, "T": 1, "C": 1, "K": 1},
+    **{"bar": 1e5, "l": 1e-3, "ml": 1 / 1e6, "A": 1, "mA": 1e-3, "V": 1, "mV": 1e-3, "kV": 1e3, "ohm": 1, "kohm": 1e3},
+    **{"H": 1, "mH": 1e-3, "uH": 1 / 1e6, "F": 1, "mF": 1e-3, "uF": 1 / 1e6, "Wb": 1, "T": 1, "C": 1, "K": 1},
     **{"deg": math.pi / 180, "rev": 2 * math.pi, "rpm": math.pi / 30},
 }
 PIECE = re.compile(r"([*/]?)([A-Za-z]+|1)(?:\^(-?\d+))?")
