@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 from each import each
+from slow_run import usual
 
 import eomgen
 from eomgen.cli import main
@@ -275,3 +276,24 @@ def test_parts_within_parts_end(tmp_path):
 def test_only_a_file_repeats():
     with pytest.raises(eomgen.ModelError, match="in Python make the parts in a loop"):
         eomgen.Model(space="plane", repeat={"i": 3})
+
+
+def answers(model: eomgen.Model) -> dict[str, object]:
+    """The number of each output, or that it has none."""
+    return {name: answer.value for name, answer in eomgen.solve(model).items()}
+
+
+@pytest.mark.slow
+@each("path", usual(sorted(MODELS.rglob("*.toml")), 8, 3))
+def test_a_model_is_the_same_as_a_part_of_another(path, tmp_path):
+    """Where it stands, and moved by nothing, all that the names of its file can be: the same answers to its outputs."""
+    own = eomgen.load(path)
+    told = answers(own) if own.outputs and own.given is None and own.linearize is None else {}
+    for at in ("", f"at = {[0] * (2 if own.space == 'plane' else 3)}"):
+        text = f'eomgen = 1\nspace = "{own.space}"\n[parts.P]\nfile = "{path}"\n{at}\n'
+        whole = eomgen.load(read(tmp_path, text))
+        assert [*whole.bodies] == [f"P_{name}" for name in own.bodies]
+        found = answers(whole) if told else {}
+        assert [*found] == [f"P_{name}" for name in told]
+        for name, value in told.items():
+            assert found[f"P_{name}"] == (None if value is None else pytest.approx(value, rel=1e-8, abs=1e-9)), name

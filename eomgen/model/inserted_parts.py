@@ -24,7 +24,7 @@ Drafting = Callable[[Mapping[str, Any], list[Diagnostic]], Any]
 """reads tables as a model, unchecked"""
 
 _NAME = re.compile(r"[^\W\d]\w*")
-_WORD = re.compile(r"(?<![\w.])[^\W\d]\w*(?!\w*\()")
+_WORD = re.compile(r"(?<![\w.])([^\W\d]\w*)(?!\w*\()(?:\.([^\W\d]\w*))?")
 
 
 @dataclass(frozen=True)
@@ -167,13 +167,15 @@ def put_in(made: Expanded, name: str, spec: Mapping[str, Any], part: Expanded, d
     if made.tables.get("space") != part.tables.get("space"):
         what = "the part is of the plane and the model of space, or the other way round"
         raise refused_at(made, Diagnostic((*path, "file"), what, "write both in one of them"))
-    tables = _Renamed(name, whole, part, bool(spec.keys() & set(PLACED))).tables()
+    seat = {key: spec[key] for key in PLACED if key in spec}
+    shift = seat.pop("at") if seat.keys() == {"at"} and isinstance(seat["at"], list) else None
+    tables = _Renamed(name, whole, part, bool(seat), shift).tables()
     for key, x in spec.get("set", {}).items():
         own = f"{name}_{key}"
         tables[COUNTED][own] = _with_value(tables[COUNTED][own], x)
         made.places[(COUNTED, own, "value")] = made.origin((*path, "set", key))
     _take_weights(made.tables, tables)
-    _merge(made, tables, name, {key: spec[key] for key in PLACED if key in spec})
+    _merge(made, tables, name, seat)
     for at, place in part.places.items():
         if len(at) > 1 and at[0] in TABLES:
             new = (at[0], f"{name}_{at[1]}", *at[2:])
@@ -209,19 +211,14 @@ def _merge(made: Expanded, tables: Mapping[str, Any], name: str, placed: Mapping
     """Put a part's tables among those of a model, on a body of its own where it is placed."""
     path: DocumentPath = (PARTS, name)
     if placed:
-        turned = placed.get("turned")
-        turns = (
-            {"turned": turned if isinstance(turned, (list, Mapping)) else {"angle": turned}}
-            if turned is not None
-            else {}
-        )
-        seat = {key: placed[key] for key in ("on", "at") if key in placed}
-        body = {"joint": {"kind": "placed", **seat, **turns}, "points": tables["points"]}
+        seat = dict(placed)
+        if "turned" in seat and not isinstance(seat["turned"], (list, Mapping)):
+            seat["turned"] = {"angle": seat["turned"]}
+        body = {"joint": {"kind": "fixed", **seat}, "points": tables["points"]}
         made.tables.setdefault("bodies", {})
         if name in made.tables["bodies"]:
-            raise refused_at(
-                made, Diagnostic(path, f"a body is called '{name}', as the part is", "give one another name", key=True)
-            )
+            what = f"a body is called '{name}', as the part is"
+            raise refused_at(made, Diagnostic(path, what, "give one another name", key=True))
         made.tables["bodies"][name] = {key: x for key, x in body.items() if x}
         made.places[("bodies", name)] = made.origin(path)
         for key in PLACED:
@@ -246,20 +243,24 @@ class _Renamed:
         draft: the model that its tables are.
         part: its tables.
         placed: it stands on a body of its own.
+        shift: by which it is moved on the ground.
     """
 
     name: str
     draft: Any
     part: Expanded
     placed: bool
+    shift: list[Any] | None
 
     def tables(self) -> dict[str, Any]:
         found: dict[str, Any] = {}
         for table in TABLES:
-            entries = table_of(self.part.tables, table).items()
+            entries = self._table(table).items()
             found[table] = {self._called(table, str(key)): self._value(x, (table, key)) for key, x in entries}
         if self.placed:
             self._on_its_body(found)
+        elif self.shift is not None:
+            self._shifted(found)
         return found
 
     def _called(self, table: str, key: str) -> str:
@@ -281,21 +282,38 @@ class _Renamed:
             return raw
         hidden = {name.rstrip("'") for name in getattr(getattr(leaf, "rule", None), "also", ())}
         at = self._place(path, raw)
-        return at if at is not None else _WORD.sub(lambda found: self._word(found[0], hidden), raw)
+        return at if at is not None else self._text(raw, hidden)
 
     def _place(self, path: DocumentPath, raw: str) -> Any:
         """The coordinates of a point of the ground that is named where only such a one can be; None of other texts."""
-        points = table_of(self.part.tables, "points")
+        points = self._table("points")
         if self.placed and path[-1] == "at" and raw in points:
             return self._value(points[raw], ("points", raw))
         return None
 
-    def _word(self, word: str, hidden: set[str]) -> str:
-        if word in hidden:
-            return word
-        if self.placed and word in table_of(self.part.tables, "points"):
+    def _text(self, text: str, hidden: set[str]) -> str:
+        """A text with the names of things replaced; of tension(T, n1-n2) the nodes are the truss's own."""
+        trusses = "|".join(map(str, self._table("trusses")))
+        own = [x.span(1) for x in re.finditer(rf"\(\s*(?:{trusses})\s*(,[^()]*)\)", text)] if trusses else []
+
+        def word(found: re.Match[str]) -> str:
+            kept = any(a <= found.start() < b for a, b in own)
+            if kept or found[1] in hidden:
+                return found[0]
+            side = found[2]
+            if side and found[1] in self._table("constraints") and side in self._table("bodies"):  # B.beam: of its two
+                side = f"{self.name}_{side}"
+            return ".".join(filter(None, (self._word(found[1]), side)))
+
+        return _WORD.sub(word, text)
+
+    def _table(self, table: str) -> Mapping[str, Any]:
+        return table_of(self.part.tables, table)
+
+    def _word(self, word: str) -> str:
+        if self.placed and word in self._table("points"):
             return f"{self.name}.{word}"
-        known = any(word in table_of(self.part.tables, table) for table in TABLES)
+        known = any(word in self._table(table) for table in TABLES)
         return f"{self.name}_{word}" if known else word
 
     def _on_its_body(self, tables: dict[str, Any]) -> None:
@@ -306,19 +324,51 @@ class _Renamed:
                 tables["bodies"][key] = {**body, "joint": {**joint, "on": self.name}}
             elif joint is None:
                 tables["bodies"][key] = {**body, "joint": {"kind": "placed", "on": self.name}}
-        directed = {leaf.path[:2] for leaf in self.draft.leaves(()) if _is_direction(leaf)}
+        directed = {leaf.path[:2] for leaf in self.draft.leaves(()) if _is_of_the_ground(leaf)}
         for table, key in sorted(directed):
             drawn: Part = getattr(self.draft, table)[key]
             new = self._called(str(table), str(key))
             axes = next((slot.key for slot in type(drawn).slots() if slot.key in ("axes", "on")), None)
             if axes is None:
-                place = self.part.origin((table, key))
-                what = f"'{key}' is written in the axes of the ground: its part cannot be placed"
-                raise Refused(
-                    Diagnostic(place.path, what, "give it points, or `axes`"), self.part.sources[place.source]
-                )
+                raise self._refused(table, key, "directions")
             if axes not in tables[table][new] or tables[table][new][axes] == "ground":
                 tables[table][new] = {**tables[table][new], axes: self.name}
+
+    def _shifted(self, tables: dict[str, Any]) -> None:
+        """Moves what stands on the ground; directions stay."""
+        tables["points"] = {key: self._moved(at, "points", key) for key, at in tables["points"].items()}
+        for key, body in tables["bodies"].items():
+            joint = body.get("joint") if isinstance(body, Mapping) else None
+            if joint is None:
+                tables["bodies"][key] = {**body, "joint": {"kind": "placed", "at": self.shift}}
+            elif isinstance(joint, Mapping) and "on" not in joint and not isinstance(joint.get("at"), str):
+                at = self._moved(joint["at"], "bodies", key) if "at" in joint else self.shift
+                tables["bodies"][key] = {**body, "joint": {**joint, "at": at}}
+        for leaf in self.draft.leaves(()):
+            if _is_of_the_ground(leaf) and leaf.rule.point and getattr(leaf.part, "on", None) is None:
+                table, key, *inner, last = leaf.path
+                holder = tables[str(table)][self._called(str(table), str(key))]
+                for each in inner:
+                    holder = holder[each]
+                holder[last] = self._moved(holder[last], table, key)
+        for key, truss in tables["trusses"].items():
+            nodes = {node: self._moved(at, "trusses", key) for node, at in truss["nodes"].items()}
+            tables["trusses"][key] = {**truss, "nodes": nodes}
+
+    def _moved(self, at: Any, table: str, key: Any) -> list[Any]:
+        shift = self.shift or []
+        if (
+            not isinstance(at, list)
+            or len(at) != len(shift)
+            or not all(isinstance(x, (int, str)) for x in (*at, *shift))
+        ):
+            raise self._refused(table, key, "places")
+        return [y if x in (0, "0") else x if y in (0, "0") else f"{x} + ({y})" for x, y in zip(shift, at, strict=True)]
+
+    def _refused(self, table: Any, key: Any, what: str) -> Refused:
+        place = self.part.origin((table, key))
+        told = f"'{key}' is written with {what} in the axes of the ground: its part cannot be placed"
+        return Refused(Diagnostic(place.path, told, "give it points, or `axes`"), self.part.sources[place.source])
 
 
 def is_one(path: DocumentPath, leaf: Leaf | None) -> bool:
@@ -333,7 +383,7 @@ def _is_own(leaf: Leaf | None) -> bool:
     return own or isinstance(rule, (TextRule, ParsedTextRule)) or (isinstance(rule, VectorRule) and rule.own_point)
 
 
-def _is_direction(leaf: Leaf) -> bool:
+def _is_of_the_ground(leaf: Leaf) -> bool:
     """True for a vector of a constraint or force in the axes of the ground; the field of weights is the model's."""
-    vector = isinstance(leaf.rule, VectorRule) and not leaf.rule.own_point
+    vector = isinstance(leaf.rule, VectorRule) and not leaf.rule.own_point and not isinstance(leaf.value, str)
     return vector and leaf.path[0] in ("constraints", "forces") and getattr(leaf.part, "kind", "") != "gravity"
