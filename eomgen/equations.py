@@ -44,6 +44,7 @@ from eomgen.symbolic.expression import (
     ScalarRow,
     ScalarRows,
     as_expression,
+    depends_on,
     inner,
     jacobian,
     operations,
@@ -194,6 +195,8 @@ class Equations(Result):
 
     def to_sympy_system(self) -> Any:
         """A SymbolicSystem of sympy.physics.mechanics: q' by q and u, M and forcing; theta' is theta_dot(t).
+
+        States of first order stand behind its coordinates.
 
         Where constraints close, their multipliers are the derivatives of further speeds, the impulses of the
         constraints.
@@ -551,19 +554,21 @@ def _sympy_system(equations: EquationsOfMotion) -> Any:
         raise DerivationError("friction that hangs on the reactions has no mass matrix", fix="take `rhs`, or codegen")
     own, t = equations.symbols, dynamicsymbols._t
     n, k = len(own.u), len(equations.J)
-    moving = (*own.q, *own.u, *own.inputs.values())
+    if any(depends_on(x, own.a) for x in equations.state_rates):
+        equations.system.refuse_states("sympy's systems hold no rates by accelerations", "take `rhs`, or codegen")
+    moving = (*own.q, *own.u, *own.z, *own.inputs.values())
     functions = {symbol(x.name): Function(x.name.replace("'", "_dot"))(t) for x in moving}
     impulses = [Function(f"impulse_{row.constraint}_{row.number}")(t) for row in equations.system.constraints.closing]
     rows: list[ScalarRow] = [(*row, *(-J[i] for J in equations.J)) for i, row in enumerate(equations.M)]
     rows += [(*row, *(0 for _ in equations.J)) for row in equations.J]
-    rates = equations.system.scope.rates
+    rates = (*equations.system.scope.rates, *equations.state_rates)
     right = (*equations.forcing, *(-x for x in equations.gamma))
     known = functions | {symbol("t"): t}
     entries = [x.xreplace(known) for x in to_sympy([*(x for row in rows for x in row), *right, *rates])]
     return SymbolicSystem(
-        [functions[symbol(x.name)] for x in own.q],
+        [functions[symbol(x.name)] for x in own.places],
         ImmutableDenseMatrix(n + k, 1, entries[(n + k) ** 2 : (n + k) * (n + k + 1)]),
         speeds=[*(functions[symbol(x.name)] for x in own.u), *impulses],
         mass_matrix=ImmutableDenseMatrix(n + k, n + k, entries[: (n + k) ** 2]),
-        coordinate_derivatives=ImmutableDenseMatrix(len(own.q), 1, entries[(n + k) * (n + k + 1) :]),
+        coordinate_derivatives=ImmutableDenseMatrix(len(rates), 1, entries[(n + k) * (n + k + 1) :]),
     )

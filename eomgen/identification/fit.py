@@ -250,7 +250,7 @@ def stacking_of(found: Regressor) -> Stacking:
 def _measured(symbols: Symbols, data: Data) -> tuple[np.ndarray, np.ndarray, Any]:
     """(t, states with accelerations, inputs) of the samples."""
     t, columns = np.asarray(_column(data, "t"), dtype=float), {}
-    for q in symbols.q:
+    for q in symbols.places:
         columns[q.name] = np.asarray(_column(data, q.name), dtype=float)
     for speed, rate in zip(symbols.u, symbols.a, strict=True):
         columns[speed.name] = _rate(data, t, speed.name, columns)

@@ -207,7 +207,7 @@ def samples_checked(found: LinearForces, samples: StackedSamples) -> Check:
 
 def _left_otherwise(motion: PhaseMotion, samples: StackedSamples, k: int) -> str:
     symbols = motion.equations.symbols
-    x, a = np.split(samples.states[k], [len(symbols.q) + len(symbols.u)])
+    x, a = np.split(samples.states[k], [len(symbols.x)])
     given = {name: float(column[k]) for name, column in samples.inputs.items()}
     here = motion.numbers(TriedState(float(samples.t[k]), x, samples.p, given))
     left, terms = here.M @ a - here.forcing, np.abs(here.M) @ np.abs(a) + np.abs(here.forcing)

@@ -15,7 +15,7 @@ from eomgen.symbolic.expression import Graph, Scalar, symbols_of
 from eomgen.symbolic.numeric import Work, transplanted
 from eomgen.symbolic.print import to_text
 
-DECLARED = ("coordinates", "speeds", "parameters", "inputs", "bodies", "constraints", "forces")
+DECLARED = ("coordinates", "speeds", "states", "parameters", "inputs", "bodies", "constraints", "forces")
 
 
 @dataclass(frozen=True)
@@ -151,6 +151,8 @@ def _rows(equations: EquationsOfMotion, graph: Graph) -> dict[str, Scalar]:
     for row, J, gamma in rows:
         terms = (x * a for x, a in zip(J, equations.symbols.a, strict=True))
         named[row.label] = sum(terms, start=gamma)
+    states = zip(equations.symbols.z, equations.state_rates, strict=True)
+    named |= {z.name: z.graph.symbol(f"{z.name}'") - rate for z, rate in states}
     scalars = tuple(named.values())
     meanings: dict[str, Scalar] = {symbol.name: graph.symbol(symbol.name) for symbol in symbols_of(scalars)}
     readable = (book_form(x, Work.FORMULA) for x in transplanted(scalars, graph, meanings))

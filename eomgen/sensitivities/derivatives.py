@@ -184,14 +184,16 @@ class Sensitivity(Result):
         if text in self.model.outputs or text not in (RHS, STATE, FREQUENCIES, REST):
             return (text,)
         if text == REST:
-            return tuple(f"{q} at {AtRest.text}" for q, part in parts.items() if not part.driven)
+            free_ones = (q for q, part in parts.items() if not part.driven)
+            return tuple(f"{x} at {AtRest.text}" for x in (*free_ones, *self.model.states))
         if text == FREQUENCIES:
             return tuple(f"frequency({k})" for k, _ in enumerate(takewhile(lambda x: "frequency(" in x, left), start=1))
         dot = "'" if text == RHS else ""
         speeds = dict.fromkeys(f"{name}{dot}" for name in (*self.model.speeds, *(f"{q}'" for q in parts)))
         free = [f"{q}'{dot}" for q, part in parts.items() if not (part.driven or part.dependent or self.model.speeds)]
         reported = tuple(takewhile(speeds.__contains__, left[len(parts) :]))
-        return (*(f"{q}{dot}" for q in parts), *(reported if set(free) <= set(reported) else free))
+        own = reported if set(free) <= set(reported) else free
+        return (*(f"{q}{dot}" for q in parts), *own, *(f"{z}{dot}" for z in self.model.states))
 
     def _as_reported(self, pair: tuple[str, str], found: Quantity) -> bool:
         due = self.in_si[pair]
@@ -226,10 +228,11 @@ def unit_of_slope(model: Model, of: str, to: str) -> Unit:
 def _unit_of(model: Model, text: str) -> Unit | None:
     """The unit of a name or formula."""
     output = requested_of(model, text)
-    own = model.units_of([text]).get(text) if text in (*model.coordinates, *model.parameters) else None
+    declared = (*model.coordinates, *model.states, *model.parameters)
+    own = model.units_of([text]).get(text) if text in declared else None
     if own is not None or text in model.parameters:
         return own
-    if output.at is not None and output.value.text in model.coordinates and output.unit is None:
+    if output.at is not None and output.value.text in declared and output.unit is None:
         return model.units_of([output.value.text]).get(output.value.text)
     return model.requesting({"asked": output}).units_of(["asked"]).get("asked")
 
@@ -330,21 +333,22 @@ class _Asking:
             if name in self.model.counts:
                 raise UsageError(f"'{name}' counts things of the model: nothing is differentiated by it", fix="set it")
             if name not in known:
-                raise UsageError(f"no parameter, coordinate or speed '{name}'", fix=f"one of {', '.join(known)}")
+                raise UsageError(f"no parameter, coordinate, speed or state '{name}'", fix=f"one of {', '.join(known)}")
 
     def formulas(self, wanted: Sequence[str]) -> Iterator[str]:
         """Requested formulas, one by one."""
         symbols = self.phase.system.symbols
         for text in wanted:
             if text == RHS and text not in self.model.outputs:
-                yield from (*(f"{q.name}'" for q in symbols.q), *(f"{u.name}'" for u in symbols.u))
+                yield from (f"{x.name}'" for x in symbols.x)
             elif text == STATE and text not in self.model.outputs:
                 yield from (x.name for x in symbols.x)
             elif text == FREQUENCIES:
                 yield from (f"frequency({k})" for k, _ in enumerate(self.small.frequencies, start=1))
             elif text == REST:
                 parts = self.model.coordinates
-                yield from (f"{q.name} at {AtRest.text}" for q in symbols.q if not parts[q.name].driven)
+                free = (q for q in symbols.q if not parts[q.name].driven)
+                yield from (f"{x.name} at {AtRest.text}" for x in (*free, *symbols.z))
             else:
                 yield text
 
@@ -452,6 +456,8 @@ class _Asking:
     @cached_property
     def _rests_alone(self) -> bool:
         """True if the equilibrium is isolated: no other one near it."""
+        if self.small.equations.states:
+            return bool(np.linalg.matrix_rank(A := self.small.A) == len(A))
         K, reference = self.small.K, self.small.small.reference
         constraints = [row.velocity for row in reference.system.constraints.closing]
         u = reference.system.symbols.u

@@ -62,7 +62,7 @@ def changing_run(
     """Formulas and their derivatives along a motion.
 
     Args:
-        start: x = (q, u) at the start, and how it changes with each name.
+        start: x = (q, u, z) at the start, and how it changes with each name.
         changes: how the parameters change with each name.
         formulas: by name.
         instants: ascending from 0 [s].
@@ -77,7 +77,7 @@ def changing_run(
     x = symbols.x
     s = {name: tuple(graph.symbol(f"d({node.name})/d({name})") for node in x) for name in changes}
     along = {name: {**seeds, **dict(zip(x, s[name], strict=True))} for name, seeds in changes.items()}
-    extended = replace(symbols, u=(*symbols.u, *(node for own in s.values() for node in own)))
+    extended = replace(symbols, z=(*symbols.z, *(node for own in s.values() for node in own)))
     rows = [*rates, *(d for seeds in along.values() for d in tangent(rates, seeds))]
     f, p = compiled(program_of(rows, extended)), parameter_vector(system.scope.model)
     x0 = np.concatenate([start[0], *(start[1][name] for name in changes)])
@@ -95,7 +95,8 @@ def _rates(phase: Study) -> tuple[Scalar, ...]:
     """x' as functions of t, x and the parameters."""
     equations, a = phase.equations, phase.system.symbols.a
     known = equations.accelerations if not equations.J and equations.accelerations else phase.accelerations
-    rates = substituted((*kinematic_rates(equations), *a), dict(zip(a, known, strict=True)))
+    outputs = (*kinematic_rates(equations), *a, *equations.state_rates)
+    rates = substituted(outputs, dict(zip(a, known, strict=True)))
     return substituted(rates, _own_inputs(phase.system))
 
 

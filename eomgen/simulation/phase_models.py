@@ -367,12 +367,12 @@ class DerivedAt:
         return np.asarray(np.sign(self._requested.many(0.0, x, p)))
 
     def _still(self, n: int) -> np.ndarray:
-        return np.zeros((n, len(self.system.symbols.q) + len(self.system.symbols.u)))
+        return np.zeros((n, len(self.system.symbols.x)))
 
     def _of_free(self, x: np.ndarray) -> np.ndarray:
         """States of the free system at the places of these; rows do not depend on its speeds."""
         symbols = self._free.symbols
-        found = np.zeros((len(x), len(symbols.q) + len(symbols.u)))
+        found = np.zeros((len(x), len(symbols.x)))
         found[:, : len(symbols.q)] = x[:, : len(symbols.q)]
         return found
 
@@ -475,7 +475,7 @@ def _freed(system: System, model: Model, row: Row) -> Model:
 
 def _with_coordinate(model: Model, constraint: str, what: str) -> tuple[Model, str]:
     """The model with a displacement from a contact that has ended, and its name."""
-    taken = {*model.parameters, *model.coordinates, *model.speeds, *model.inputs, *model.unknowns}
+    taken = {*model.parameters, *model.coordinates, *model.speeds, *model.states, *model.inputs, *model.unknowns}
     name = f"{constraint}_{what}"
     while name in taken:
         name += "_"

@@ -460,7 +460,7 @@ class GivenMotion:
         if strangers:
             raise UsageError(f"the motion of '{name}' depends on '{strangers[0]}'", fix="give it as a function of t")
         program = program_of(scalars, symbols, inputs=self.system.inputs)
-        states = np.zeros((len(self.t), len(symbols.q) + len(symbols.u)))
+        states = np.zeros((len(self.t), len(symbols.x)))
         values = compiled(program, "numpy").many(self.t, states, self.p)
         return values[:, 0], values[:, 1], values[:, 2]
 
@@ -482,6 +482,7 @@ class GivenMotion:
         Raises:
             UsageError: a speed that is no rate; constraints that are open.
         """
+        self.system.refuse_states("forces along a given motion are not found", "take .function(), with x = (q, u, z)")
         symbols, columns = self.system.symbols, self._columns
         strange = [u.name for u in symbols.u if u.name.removesuffix("'") not in columns]
         if strange:

@@ -4,6 +4,8 @@ The laws are those of the numbers, over values that carry their slopes: y + y_p 
 
     Z^T (M a - forcing) = 0,   G = 0:   K dq_i + d/dp Z^T (M a - forcing) = 0,   q' = P dq_i + the part due to G_p
 
+(of states of first order z' = 0 beside it)
+
 and of a simple eigenvalue, with A r = lambda r and l^H A = lambda l^H,
 
     d lambda/dp = l^H (dA/dp) r / l^H r.
@@ -27,7 +29,7 @@ from eomgen.mechanics.linearization.reduction import LinearEquations, Reducing, 
 from eomgen.mechanics.linearization.reference import ReferenceMotion
 from eomgen.mechanics.start import Seeds
 from eomgen.mechanics.state import NumberField, Numbers
-from eomgen.symbolic.expression import Fraction, Node, Scalar, tangent
+from eomgen.symbolic.expression import Fraction, Node, Scalar, jacobian, tangent
 from eomgen.symbolic.numeric import evaluate, fifty_digits, floats_of, tolerances
 
 
@@ -127,7 +129,7 @@ class ParameterSlopes:
 
     @cached_property
     def state(self) -> dict[Node, float]:
-        """Derivatives of q and u of the reference.
+        """Derivatives of q, u and z of the reference.
 
         Raises:
             DerivationError: the place does not change smoothly, or a steady motion has no closed form.
@@ -135,7 +137,7 @@ class ParameterSlopes:
         reference = self._reference
         symbols = reference.system.symbols
         if reference.about_equilibrium and not reference.moving:
-            found = dict(zip(symbols.q, self._rest().tolist(), strict=True))
+            found = dict(zip(symbols.places, self._rest().tolist(), strict=True))
             return found | dict.fromkeys(symbols.u, 0.0)
         if not reference.is_exact:
             raise DerivationError(
@@ -165,18 +167,25 @@ class ParameterSlopes:
             pushed = [[sloped(x).slope] for x in requested] + [[0.0]] * (len(choice.places.rows) - len(requested))
             G_d = [[row[k] for k in choice.places.following] for row in rows]
             aside[list(choice.places.following)] = floats(numbers.solution(G_d, numbers.negative(pushed)))[:, 0]
-        moved = {x: Fraction(slope) for x, slope in zip(reference.system.symbols.q, aside.tolist(), strict=True)}
+        symbols, rates = reference.system.symbols, reference.system.scope.state_rates
+        moved = {x: Fraction(slope) for x, slope in zip(symbols.q, aside.tolist(), strict=True)}
         left = slopes_in([Reducing(first, choice, WithSlopes(reference.numbers, here | moved)).at.unbalanced])[0]
         reducing = Reducing(first, choice, Numbers(reference.numbers))
         e = reducing.equations
         K = floats(e.K)
+        if rates:
+            still = Numbers({**reference.numbers, **dict.fromkeys(symbols.a, fifty_digits().number(0))})
+            Z = still.array(jacobian(rates, symbols.places), len(symbols.places))
+            K = np.vstack([K, Z @ floats(e.P)])
+            left = np.append(left, still.of(tangent(rates, here | moved)))
+            aside = np.append(aside, np.zeros(len(symbols.z)))
         step = -np.linalg.lstsq(K, left, rcond=tolerances.RANK)[0]
         if np.max(abs(K @ step + left), initial=0.0) > tolerances.CARRIED * np.max(abs(left), initial=0.0):
             raise DerivationError(
                 "the equilibrium ends, or forks, at these values: it has no slope",
                 fix="take other values of the parameters",
             )
-        found = aside + floats(reducing.P) @ step
+        found = aside + floats(e.P) @ step
         return np.where(abs(found) < tolerances.COORDINATE_AT_50, 0.0, found)
 
     @cached_property

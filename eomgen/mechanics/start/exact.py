@@ -316,12 +316,12 @@ Seeds = Mapping[Node, Scalar]
 
 
 def start_seeds(system: System, numbers: Mapping[Node, Any], seeds: Seeds, own: str = "") -> dict[Node, Fraction]:
-    """Derivatives of coordinates and speeds at the start with respect to parameters, or to the start of one of them.
+    """Derivatives of what starts (q, u, z) with respect to parameters, or to the start of one of them.
 
     Args:
         numbers: t, parameters, inputs, q and u at the start, with 50 digits.
         seeds: the changes of parameters and inputs.
-        own: the coordinate or speed whose start is changed; "" of none.
+        own: the coordinate, speed or state whose start is changed; "" of none.
     Raises:
         DerivationError: the constraints do not determine them.
     """
@@ -348,7 +348,9 @@ def start_seeds(system: System, numbers: Mapping[Node, Any], seeds: Seeds, own: 
     silent = [u for u in symbols.u if u.name != own and scope.model.is_guess(u.name)]
     left = at(rates, {**seeds, **dq, **du})
     du = _kept(rates, left, silent, du, numbers, what, _moved(speeds, symbols.u, numbers))
-    return dq | du
+    states = scope.start_values(symbols.z)
+    dz = dict(zip(symbols.z, map(Fraction, at([states[z] for z in symbols.z], seeds)), strict=True))
+    return dq | du | dz | {z: Fraction(1) for z in symbols.z if z.name == own}
 
 
 def _kept(
