@@ -333,7 +333,8 @@ class _Asking:
             if name in self.model.counts:
                 raise UsageError(f"'{name}' counts things of the model: nothing is differentiated by it", fix="set it")
             if name not in known:
-                raise UsageError(f"no parameter, coordinate, speed or state '{name}'", fix=f"one of {', '.join(known)}")
+                kinds = "coordinate, speed or state" if symbols.z else "coordinate or speed"
+                raise UsageError(f"no parameter, {kinds} '{name}'", fix=f"one of {', '.join(known)}")
 
     def formulas(self, wanted: Sequence[str]) -> Iterator[str]:
         """Requested formulas, one by one."""
