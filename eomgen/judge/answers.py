@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from itertools import chain
@@ -22,14 +22,25 @@ from eomgen.judge.diagnosis import BELIEVED, PLAINEST
 from eomgen.judge.fixes import Authored, Fixes
 from eomgen.judge.implied import Instant, implied_by, simplest_explanation
 from eomgen.judge.reading import FREQUENCY, HandEquation
-from eomgen.judge.terms import LONG
-from eomgen.judge.truth import other_models
+from eomgen.judge.terms import LONG, short_text, terms_of
+from eomgen.judge.truth import other_models, truth_of
 from eomgen.judge.verdict import RIGHT, UNDECIDED, WRONG, Cause, Verdict, causes_of, kind_of_equation
 from eomgen.judge.written_pages import WrittenNumber
 from eomgen.model import Output, Unit, with_values
 from eomgen.questions import Answer
-from eomgen.symbolic.expression import Expression, Node, Scalar, is_zero, parse
-from eomgen.symbolic.numeric import tolerances
+from eomgen.symbolic.exact import simplest
+from eomgen.symbolic.expression import (
+    Expression,
+    Node,
+    Scalar,
+    depends_on,
+    derivative,
+    is_zero,
+    over,
+    parse,
+    substituted,
+)
+from eomgen.symbolic.numeric import Work, tolerances
 from eomgen.symbolic.print import to_text
 
 ROUNDED = 1.000001  # of half of the last digit: a number that was rounded lies within
@@ -240,6 +251,58 @@ def _wrong(case: Case, written: HandEquation, kind: str, at: Instant, left: Answ
     if it_is:
         causes = (*causes[:-1], replace(causes[-1], text=f"{causes[-1].text}; {it_is}"))
     return Verdict(written.given, kind, WRONG, difference=difference, causes=causes)
+
+
+# -------- states ----------------------------------------------------------------------------------------------
+# An equation for the rate of a state of first order -> what is wrong with it, term by term of the declared rate.
+
+
+def of_state(case: Case, written: HandEquation, kind: str) -> Verdict | None:
+    """The verdict on a wrong equation for z'; None where it is right, or about more than one such rate."""
+    scope = case.system.scope
+    asked = [z for z in scope.symbols.z if f"{z.name}'" in written.names]
+    if len(asked) != 1 or case.unknown_names(written) or truth_of(case, case.value(written.difference), kind).holds:
+        return None
+    z, declared = asked[0], scope.names[f"{asked[0].name}'"]
+    rate = z.graph.symbol(f"({z.name}')")  # no name of a model has parentheses
+    scalar = case.value(written.difference, {f"{z.name}'": rate})
+    slope, (rest,) = derivative(scalar, rate), substituted((scalar,), {rate: 0})
+    accelerated = depends_on(scalar, scope.symbols.a) and not depends_on(declared, scope.symbols.a)
+    if is_zero(slope) or depends_on(slope, (rate,)) or accelerated:
+        return None
+    apart = over(-rest, slope) - declared
+    if is_zero_everywhere(case.system, apart).holds is not False:
+        return None
+    difference = short_text(-apart, scope.positive)
+    cause = next((x for x in _causes_of_state(case, z, declared, apart)), None)
+    text = f"{z.name}' is another one: {short_text(declared, scope.positive)}"
+    found = cause or Cause("other", text, quantity=f"the rate of {z.name}")
+    return Verdict(written.given, kind, WRONG, difference=difference, causes=(found,))
+
+
+def _causes_of_state(case: Case, z: Node, declared: Scalar, apart: Scalar) -> Iterator[Cause]:
+    """A term of the declared rate that is missing, or has another sign or factor; a term too much."""
+    positive = case.system.scope.positive
+    quantity = f"the rate of {z.name}"
+
+    def vanishes(x: Scalar) -> bool:
+        return is_zero_everywhere(case.system, x).holds is True
+
+    terms = terms_of(declared, positive)
+    ways = (("missing_term", -1, "is missing"), ("sign", -2, "has the other sign"))
+    for kind, factor, what in ways:
+        for term in terms:
+            if vanishes(apart - factor * term):
+                shown = short_text(term, positive)
+                yield Cause(kind, f"the term {shown} of {quantity} {what}", term=shown, quantity=quantity)
+    for term in terms:
+        ratio = simplest(over(apart, term), Work.VALUE, positive)
+        if type(ratio) is not Node:
+            shown, words = short_text(term, positive), f"has the factor {to_text(ratio + 1)}"
+            yield Cause("factor", f"the term {shown} of {quantity} {words}", term=shown, quantity=quantity)
+    if len(extra := terms_of(apart, positive)) == 1:
+        shown = short_text(extra[0], positive)
+        yield Cause("extra_term", f"the term {shown} is too much in {quantity}", term=shown, quantity=quantity)
 
 
 def _place(case: Case, written: HandEquation, at: Instant) -> dict[Node, Scalar] | None:

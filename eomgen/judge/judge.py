@@ -10,7 +10,7 @@ from typing import Any
 
 from eomgen.errors import DerivationError, EomgenError, ExpressionError, MissingValues, RunFailed, UsageError
 from eomgen.frozen import dataclass
-from eomgen.judge.answers import of_output, of_unknown, requested
+from eomgen.judge.answers import of_output, of_state, of_unknown, requested
 from eomgen.judge.balances import requests_reactions
 from eomgen.judge.case import Case
 from eomgen.judge.comparison import Comparison, excess, first_order_place, remainder
@@ -424,9 +424,9 @@ class Judge:
             return requested(case, written, kind, at)
         if unknown:
             return self._of_other_names(written, kind, unknown)
-        course = self._course(written)
-        if course is not None:
-            return course
+        found = of_state(case, written, kind)
+        if (found := self._course(written) if found is None else found) is not None:
+            return found
         return self._of_scalar(written, kind, case.value(written.difference))
 
     def _output_stated(self, written: HandEquation) -> str:

@@ -207,3 +207,29 @@ def test_rates_that_hold_accelerations_and_other_rates_linearize():
     A = np.array([[0, 1, 0, 0], a, f, f - np.array([0, 0, 0, 1 / T])])
     assert found.A == pytest.approx(A) and equations.rhs_jacobian()[0] == pytest.approx(A)
     assert found.certify().ok and equations.certify().ok
+
+
+@pytest.mark.parametrize(
+    "equation, kind, term",
+    [
+        ("i' = (U - R*i + k*theta')/L", "sign", "-k*theta'/L"),
+        ("i' = (U - R*i)/L", "missing_term", "-k*theta'/L"),
+        ("L*i' + 2*R*i + k*theta' = U", "factor", "-R*i/L"),
+        ("L*i' + R*i + k*theta' = U + b*theta'", "extra_term", "b*theta'/L"),
+        ("L*i' + R*i + k*theta' = U", "", ""),
+    ],
+)
+def test_an_equation_for_the_rate_of_a_state_is_judged_by_its_terms(equation, kind, term):
+    """Right in any form; what is wrong is named by the terms of the declared rate, not by forces."""
+    verdict = eomgen.verify(eomgen.loads(MOTOR), equation)
+    assert bool(verdict) == (not kind)
+    assert [(x.kind, x.term) for x in verdict.causes] == ([(kind, term)] if kind else [])
+
+
+def test_sensitivities_follow_states_through_a_run_and_at_rest():
+    """s' = f_x s + f_p with z among x; of rest with z' = 0 beside the balance; checked by differences."""
+    at_start = eomgen.sensitivity(eomgen.loads(MOTOR), of="i'", to="i")
+    assert at_start.matrix[0, 0] == pytest.approx(-1.2 / 3e-3)
+    rest = eomgen.sensitivity(eomgen.loads(SERVO), of="equilibrium", to="r")
+    i = -0.5 * 9.81 * 0.2 * np.sin(0.5) / 0.8
+    assert rest.matrix[:, 0] == pytest.approx([1, i, 1.2 * i / 30])
