@@ -245,5 +245,26 @@ def _javascript(found: Found, model: Any, product: Product, oracle: Oracle, s: S
     _right(found, "JavaScript", json.loads(reported.stdout), product, oracle, s, solved)
 
 
-PARTS = {"answers": _answers, "reactions": _reactions, "run": _run, "small motions": _small, "inverse": _inverse}
+def _as_part(found: Found, model: Any, product: Product, oracle: Oracle, s: State, solved: Solved) -> None:
+    """The model as a part of another file, on the ground as it is: the same rates of the same state."""
+    rhs = product.functions["numpy"] if "numpy" in product.functions else next(iter(product.functions.values()))
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / "part.toml").write_text(product.text)
+        text = f'eomgen = 1\nspace = "{model.space}"\n[parts.P]\nfile = "part.toml"\n'
+        whole = eomgen.derive(eomgen.loads(text, str(Path(folder) / "whole.toml"))).rhs("numpy")
+    inputs = [oracle.model.input(i, oracle.maximal(s)) for i in product.equations.inputs]
+    ours, theirs = (np.asarray(each(0.0, each.x0, each.p0, inputs)) for each in (rhs, whole))
+    size = 1.0 + float(np.max(np.abs(ours), initial=0.0))
+    for k, (a, b) in enumerate(zip(theirs, ours, strict=True)):
+        found.same("as a part", f"rate {k} at the start", a, b, size)
+
+
+PARTS = {
+    "answers": _answers,
+    "reactions": _reactions,
+    "run": _run,
+    "small motions": _small,
+    "inverse": _inverse,
+    "as a part": _as_part,
+}
 LANGUAGES = {"c": _c, "javascript": _javascript}

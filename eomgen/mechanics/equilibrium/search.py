@@ -613,7 +613,7 @@ def _turned(statics: StaticEquations, z: np.ndarray, guess: np.ndarray) -> np.nd
     z = z.copy()
     for four in statics.system.scope.quaternions:
         places = [statics.q.index(e) for e in four if e in statics.q]
-        if places and float(z[places] @ guess[places]) < 0:
+        if len(places) == len(four) and float(z[places] @ guess[places]) < 0:  # else one that is held has its sign
             z[places] = -z[places]
         z[places] = np.where(abs(z[places]) < tolerances.ZERO_AT_50, 0.0, z[places])
     return z
