@@ -258,7 +258,7 @@ DOORS = {  # rooms that are imported through what their stub names, and how many
     "mechanics.dynamics": 25,
     "mechanics.start": 12,
     "mechanics.free_bodies": 30,
-    "mechanics.impacts": 3,
+    "mechanics.impacts": 6,
     "mechanics.statics": 27,
     "mechanics.integrals": 8,
     "mechanics.instant": 18,

@@ -36,6 +36,7 @@ from eomgen.model.parts import (
     Coordinate,
     Given,
     GroundPoints,
+    ImpactRules,
     Input,
     Linearize,
     Output,
@@ -92,6 +93,7 @@ class Model(Numbers, Connections, UnitsOfNames, Part):
         constraints: all contacts beyond the one joint of each body.
         trusses: massless bars between hinges.
         forces: what is applied.
+        impact: the law of impacts.
         linearize: the state about which small motions are taken.
         given: known velocities and accelerations at one instant.
         unknowns: numbers that statics is to find.
@@ -120,6 +122,7 @@ class Model(Numbers, Connections, UnitsOfNames, Part):
     constraints: Constraints = Table()
     trusses: Annotated[Table[Truss], _table(Truss, "truss")] = Table()
     forces: Forces = Table()
+    impact: Annotated[ImpactRules, PartRule(ImpactRules)] | None = None
     linearize: Annotated[Linearize, PartRule(Linearize)] | None = None
     given: Annotated[Given, PartRule(Given)] | None = None
     unknowns: Annotated[Table[Unknown], _table(Unknown, "unknown")] = Table()

@@ -278,6 +278,22 @@ class Linearize(Part):
     coordinates: Coordinates | None = None
 
 
+@dataclass(frozen=True, kw_only=True)
+class ImpactRules(Part):
+    """The law of the model's impacts; with it, friction has a part in them.
+
+    Args:
+        law: where the restitution e ends: "newton" at the speed -e v, "poisson" at the impulse e times that of the
+            compression, "energetic" (Stronge) at the work e^2 times that of the compression (None: Newton's law without
+            friction, Poisson's with friction, which never gains energy).
+        order: of contacts that touch: all at once, or one after the other, the one approached fastest first.
+    """
+
+    title: ClassVar[str] = "[impact]"
+    law: Annotated[str, TextRule(("newton", "poisson", "energetic"))] | None = None
+    order: Annotated[str, TextRule(("simultaneous", "sequential"))] = "simultaneous"
+
+
 OutputEquations = Annotated[tuple[WrittenEquation, ...], ListRule(EquationRule(), single=True)]
 
 

@@ -15,6 +15,7 @@ than can be told from rounding need not rebound.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property, partial
 from itertools import pairwise
@@ -40,6 +41,8 @@ from eomgen.symbolic.expression import Scalar, State
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 
 STATES = 100  # of a phase that are looked at
+STEPS, MOST_STEPS = 1000, 50_000  # of an impact that is followed in small steps
+STEPPED = 0.01  # of the speeds before: so far the result of small steps may be off
 LOW = 1e2 * tolerances.COMPUTED  # [of the coordinates] a flight that need not be followed
 
 
@@ -211,14 +214,14 @@ class _Bodies:
         if np.max(np.abs(early[:q] - late[:q]), initial=0.0) > tolerances.OPEN_GAP * size:
             return "a coordinate jumps"
         pushes, frees = [], [J for J, _ in self._rows_at(self.system.constraints.closing, late)]
-        e = self._restitutions
+        e, mu, exactly = self._restitutions, self._frictions, self._rebounds_exactly
         for name, rows in self._rows.items():
             found = self._rows_at(rows, late)
             speeds = [v for _, v in found]
             if not self._touches(name, rows):
                 continue
             approach = self._rows_at(rows[:1], early)[0][1]
-            due = -e.get(name, 0.0) * min(approach, 0.0)
+            due = -e.get(name, 0.0) * min(approach, 0.0) * (exactly and name not in mu)
             rests = abs(speeds[0]) <= tolerances.OPEN_GAP * size and name not in self.after.model.configuration.open
             if rests and self._is_low(rows[0], early, max(due, abs(approach))):  # it holds on, where it would bounce on
                 frees.append(found[0][0])
@@ -226,7 +229,12 @@ class _Bodies:
             if speeds[0] - due < -tolerances.OPEN_GAP * size:
                 wrong = "is still approached with" if speeds[0] < 0 and not due else "rebounds too slowly, by"
                 return f"'{name}' {wrong} {due - speeds[0]:.3g} m/s"
-            if speeds[0] - due <= tolerances.OPEN_GAP * size:
+            if name in mu:
+                (t, _), n = self._sliding_row(rows[0], late), found[0][0]
+                pushes += [n + mu[name] * t, n - mu[name] * t]
+                if wrong := self._otherwise_than_in_steps(name, (n, t), mu[name], early, late):
+                    return wrong
+            elif speeds[0] - due <= tolerances.OPEN_GAP * size or not exactly:
                 pushes.append(found[0][0])
                 frees += [J for J, v in found[1:] if abs(v) <= tolerances.OPEN_GAP * size]
         return self._left(pushes, frees, early, late)
@@ -240,6 +248,10 @@ class _Bodies:
         speeds = [state[len(self.system.symbols.q) :][:n] for state in (early, late)]
         P = self._momenta(late, speeds)
         M = units[:-1] - units[-1]
+        gained = float((speeds[1] @ M @ speeds[1] - speeds[0] @ M @ speeds[0]) / 2)
+        least = tolerances.UNBALANCED * float(speeds[0] @ M @ speeds[0])
+        if not self._rebounds_exactly and gained > least and not np.any(self._biases(late)):
+            return f"the impact gains {gained:.3g} J"
         found, V = np.linalg.eigh((M + M.T) / 2)
         held = found > tolerances.SUMMED * max(found, default=0.0)
         whiten = (V[:, held] / np.sqrt(found[held])).T
@@ -251,6 +263,68 @@ class _Bodies:
         if left > tolerances.UNBALANCED * fastest * float(np.sqrt(np.trace(M))):
             return f"no impulses that only push give the change of momentum: {left:.3g} sqrt(J) are left"
         return ""
+
+    @property
+    def _rebounds_exactly(self) -> bool:
+        """True if each contact leaves with e times its approach: Newton's law, all at once."""
+        rules = self.system.scope.model.impact
+        return rules is None or (rules.law in (None, "newton") and rules.order == "simultaneous")
+
+    def _biases(self, state: np.ndarray) -> np.ndarray:
+        """sigma of every row: the speeds that are given."""
+        rows = (*self.system.constraints.closing, *(row for own in self._rows.values() for row in own))
+        still = self._with(state, [np.zeros(len(self.system.symbols.u))])
+        return self._numbers(tuple(row.velocity for row in rows), still)[0] if rows else np.zeros(0)
+
+    def _sliding_row(self, row: Row, state: np.ndarray) -> tuple[np.ndarray, float]:
+        """(J, J u + sigma) of the sliding velocity of a contact."""
+        n = len(self.system.symbols.u)
+        found = self._numbers((row.sliding,), self._with(state, [*np.eye(n), np.zeros(n)]))[:, 0]
+        return found[:-1] - found[-1], float(self._numbers((row.sliding,), state[None])[0, 0])
+
+    @property
+    def _frictions(self) -> dict[str, float]:
+        """mu of each contact whose friction has a part in its impacts: with a restitution, or under a declared law."""
+        model = self.system.scope.model
+        rough = [c for c in model.contacts if c.unilateral and c.mu is not None and model.space == "plane"]
+        declared = {
+            c.name: self.system.scope.value(c.mu)
+            for c in rough
+            if c.restitution is not None or model.impact is not None
+        }
+        found = self._numbers(tuple(declared.values()), self._state(self._end)[None])[0] if declared else ()
+        return dict(zip(declared, map(float, found), strict=True))
+
+    def _otherwise_than_in_steps(
+        self, name: str, rows: tuple[np.ndarray, np.ndarray], mu: float, early: np.ndarray, late: np.ndarray
+    ) -> str:
+        """Message if the law of impact in STEPS small steps of the normal impulse gives other speeds; "".
+
+        Of single impacts: of several, one after the other, momentum and energy are looked at alone.
+        """
+        rules = self.system.scope.model.impact
+        touching = [other for other, own in self._rows.items() if self._touches(other, own)]
+        row, (n, t) = self._rows[name][0], rows
+        v_n, v_t = (self._rows_at((row,), early)[0][1], self._sliding_row(row, early)[1])
+        if len(touching) > 1 or v_n >= 0 or self._is_low(row, early, abs(v_n)):
+            return ""
+        law, e = "poisson" if rules is None or rules.law is None else rules.law, self._restitutions.get(name, 0.0)
+        found = stepped_impact(self._for_impulses(late, (n, t)), (v_n, v_t), mu, e, law)
+        there = (self._rows_at((row,), late)[0][1], self._sliding_row(row, late)[1])
+        if max(abs(a - b) for a, b in zip(found, there, strict=True)) > STEPPED * (abs(v_n) + abs(v_t)):
+            steps = f"by small steps {found[0]:.4g} and {found[1]:.4g}"
+            return f"'{name}' leaves with {there[0]:.4g} and slides with {there[1]:.4g} m/s, {steps}"
+        return ""
+
+    def _for_impulses(self, state: np.ndarray, rows: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
+        """Changes of (v_n, v_t) for unit impulses along n and t, the constraints held."""
+        n = len(self.system.symbols.u)
+        units = self._momenta(state, [*np.eye(n), np.zeros(n)])
+        held = np.array([J for J, _ in self._rows_at(self.system.constraints.closing, state)]).reshape(-1, n)
+        matrix = np.block([[units[:-1] - units[-1], held.T], [held, np.zeros((len(held), len(held)))]])
+        along = np.array(rows)
+        right = np.vstack([along.T, np.zeros((len(held), 2))])
+        return np.asarray(along @ np.linalg.lstsq(matrix, right, rcond=None)[0][:n])
 
     @property
     def _restitutions(self) -> dict[str, float]:
@@ -342,6 +416,31 @@ class _Bodies:
     def _numbers(self, scalars: tuple[Scalar, ...], x: np.ndarray) -> np.ndarray:
         function: RightHandSide = compiled(program_of(scalars, self.system.symbols, inputs=self.system.inputs), "numpy")
         return function.many(self.after.start, x, self.after.model.p)
+
+
+def stepped_impact(D: np.ndarray, v: tuple[float, float], mu: float, e: float, law: str) -> tuple[float, float]:
+    """(v_n, v_t) after an impact, by small steps of the normal impulse and Coulomb's friction in each of them."""
+    step = -v[0] / D[0, 0] / STEPS
+    (v_n, v_t), p, W, compressed = v, 0.0, 0.0, None
+    for _ in range(MOST_STEPS):
+        slope = abs(D[0, 1]) + mu * D[1, 1]
+        sticking = float(np.clip(-(D[0, 1] + v_t / step) / D[1, 1], -mu, mu)) if D[1, 1] else 0.0
+        F = sticking if abs(v_t) <= slope * step else -mu * math.copysign(1.0, v_t)
+        change = D @ np.array([step, F * step])
+        W += (v_n + change[0] / 2) * step
+        v_n, v_t, p = v_n + float(change[0]), v_t + float(change[1]), p + step
+        if compressed is None and v_n >= 0:
+            compressed = p, W
+        if (
+            compressed is not None
+            and {
+                "newton": v_n >= -e * v[0],
+                "poisson": p >= (1 + e) * compressed[0],
+                "energetic": W >= (1 - e * e) * compressed[1],
+            }[law]
+        ):
+            break
+    return v_n, v_t
 
 
 # -------- friction laws ---------------------------------------------------------------------------------------

@@ -426,7 +426,8 @@ def _rows_of_impacts(run: Trajectory) -> tuple[tuple[str, str, str], ...]:
     """A row for each impact: what closed and when, the impulses that are not 0, the loss of kinetic energy."""
     rows = []
     for impact in run.impacts[:MOST_REPORTED]:
-        known = {name: x for name, x in impact.impulses.items() if x}
+        least = tolerances.SOLVED * max((abs(x) for x in impact.impulses.values() if math.isfinite(x)), default=0.0)
+        known = {name: x for name, x in impact.impulses.items() if not abs(x) <= least}
         values = [f"{name} {f'{x:.6g}' if math.isfinite(x) else 'has no single value'}" for name, x in known.items()]
         rows.append((f"{impact.contact} at t = {impact.t:.6g} s", ", ".join(values), f"{impact.loss:.6g} J"))
     more = len(run.impacts) - MOST_REPORTED

@@ -24,8 +24,9 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Row, rows_of_constraint
 from eomgen.mechanics.dynamics import System, assembled_by_recursion
-from eomgen.mechanics.impacts import Hit, Jump, jump
+from eomgen.mechanics.impacts import NEWTON, POISSON, Hit, ImpactLaw, Jump, jump
 from eomgen.mechanics.kinematics import SystemInertia
+from eomgen.model import Contact
 from eomgen.simulation.phase_model import PhaseModel, Values
 from eomgen.simulation.result import Impact
 from eomgen.symbolic.expression import Scalar, jacobian, substituted
@@ -74,10 +75,14 @@ class WithoutContacts:
         of_contact, first = {}, k
         for name, own in self._rows.items():
             of_contact[name], first = rows[first : first + len(own)], first + len(own)
-        e = self.restitutions
-        hits = [Hit(name, of_contact[name], e.get(name, 0.0), name in resting) for name in touching]
+        e, mu = self.restitutions, self._frictions
+        tangents = dict(zip((name for name in mu if not self._in_space), rows[first:], strict=True))
+        hits = [
+            Hit(name, of_contact[name], e.get(name, 0.0), name in resting, mu.get(name, 0.0), tangents.get(name))
+            for name in touching
+        ]
         u = x[len(self.system.symbols.q) :][:nu]
-        after = jump(M, rows[:k], hits, u)
+        after = jump(M, rows[:k], hits, u, self.law_of(hits))
         size = tolerances.COMPUTED * max(1.0, float(np.max(np.abs(u), initial=0.0)))
         approached = [hit.name for hit in hits if hit.speed(u) < -size]
         impact = Impact(t, ", ".join(approached), self._named(after), self._lost(t, x, after.u))
@@ -103,12 +108,38 @@ class WithoutContacts:
                 raise DerivationError(what, f"constraints.{name}", "between 0 (no rebound) and 1 (no loss)")
         return dict(zip(contacts, found.tolist(), strict=True))
 
+    def law_of(self, hits: Sequence[Hit]) -> ImpactLaw:
+        """The declared law; Newton's where none is, and of contacts with friction Poisson's."""
+        rules = self.system.scope.model.impact
+        usual = POISSON if any(hit.mu and not hit.rests for hit in hits) else NEWTON
+        return ImpactLaw(usual) if rules is None else ImpactLaw(rules.law or usual, rules.order)
+
+    @property
+    def _in_space(self) -> bool:
+        return self.system.scope.model.space == "space"
+
+    @property
+    def _rough(self) -> tuple[Contact, ...]:
+        """The contacts whose friction has a part in their impacts: with a restitution, or under a declared law."""
+        model = self.system.scope.model
+        ending = [c for c in model.contacts if c.unilateral and c.mu is not None]
+        return tuple(c for c in ending if c.restitution is not None or model.impact is not None)
+
+    @property
+    def _frictions(self) -> dict[str, float]:
+        """The coefficient of friction of each of them."""
+        value = self.system.scope.value
+        function = self._function("frictions", lambda: tuple(value(c.mu) for c in self._rough))
+        found = function.many(0.0, np.zeros((1, len(self.system.symbols.x))), self.p)[0]
+        return dict(zip((c.name for c in self._rough), found.tolist(), strict=True))
+
     def _named(self, after: Jump) -> dict[str, float]:
         """The impulses by name: of a contact's first row its own."""
         found: dict[str, float] = {}
         for name, values in after.impulses.items():
             rows = self._rows[name]
             found |= {name if k == 0 else f"{name} {rows[k].component}": float(x) for k, x in enumerate(values)}
+        found |= {f"{name} t": x for name, x in after.friction.items()}
         closing = self.system.constraints.closing
         several = [row.constraint for row in closing]
         for row, x in zip(closing, after.held, strict=True):
@@ -166,10 +197,11 @@ class WithoutContacts:
         return tuple(requested)
 
     def _entries(self) -> tuple[Scalar, ...]:
-        """M, the rows (J, sigma) of the constraints that stay, and those of the contacts."""
+        """M, the rows (J, sigma) of the constraints that stay, of the contacts, and of sliding velocities."""
         M = tuple(x for row in assembled_by_recursion(self.system).M for x in row)
         rows = (*self.system.constraints.closing, *(row for own in self._rows.values() for row in own))
-        return (*M, *self._with_bias([row.velocity for row in rows]))
+        tangents = [] if self._in_space else [self._rows[contact.name][0].sliding for contact in self._rough]
+        return (*M, *self._with_bias([*(row.velocity for row in rows), *tangents]))
 
     def _with_bias(self, velocities: Sequence[Scalar]) -> list[Scalar]:
         """(J, sigma) of each row, J u + sigma its velocity."""

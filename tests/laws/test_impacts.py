@@ -11,8 +11,9 @@ from scipy.optimize import nnls
 
 import eomgen
 from eomgen.errors import DerivationError, EomgenError, ModelError
-from eomgen.mechanics.impacts import Hit, jump
-from eomgen.mechanics.impacts.law import lemke
+from eomgen.mechanics.impacts import Hit, ImpactLaw, jump
+from eomgen.mechanics.impacts.law import lemke, routh
+from eomgen.proof.contact_phases import stepped_impact
 from eomgen.simulation.result import Trajectory
 
 G = 9.81
@@ -283,6 +284,114 @@ constraints.wire = { kind = "link", points = ["ball.origin", "O"], length = "l",
     assert result["y'"][-1] == pytest.approx(0.5 * G * t - G * (0.5 - t), abs=1e-7)
 
 
+# -- friction, other laws, one after the other -----------------------------------------------------
+
+
+def random_rod(rng: np.random.Generator) -> tuple[np.ndarray, tuple[float, float], float, float]:
+    """D of the end of a rod m = l = 1 at a random angle, (v_n, v_t), mu, e."""
+    phi = rng.uniform(0, 2 * math.pi)
+    x, y = math.cos(phi) / 2, math.sin(phi) / 2
+    D = np.array([[1 + 12 * x * x, -12 * x * y], [-12 * x * y, 1 + 12 * y * y]])
+    return D, (-rng.uniform(0, 1), rng.uniform(-1, 1)), rng.uniform(0, 1.2), rng.uniform(0, 1)
+
+
+def test_with_friction_newton_can_gain_energy_and_poisson_and_stronge_never_do():
+    """dT = v^T p + p^T D p/2; |p_t| <= mu p_n and v_n >= 0 after it."""
+    rng, gained = np.random.default_rng(3), {"newton": 0, "poisson": 0, "energetic": 0}
+    for _ in range(2000):
+        D, v, mu, e = random_rod(rng)
+        for law in gained:
+            p = np.array(routh(D, v, mu=mu, e=e, law=law))
+            gained[law] += bool(v @ p + p @ D @ p / 2 > 1e-12)
+            assert abs(p[1]) <= mu * p[0] + 1e-12 and (v + D @ p)[0] >= -1e-12
+    assert gained["newton"] > 10 and gained["poisson"] == gained["energetic"] == 0
+
+
+def test_all_laws_are_one_where_nothing_slides_the_other_way_or_sticks():
+    """Without friction v_n+ = -e v_n; the work of Stronge's restitution is e^2 times that of the compression."""
+    rng = np.random.default_rng(4)
+    for _ in range(100):
+        D, v, _, e = random_rod(rng)
+        p = [routh(D, v, mu=0.0, e=e, law=law)[0] for law in ("newton", "poisson", "energetic")]
+        assert p == pytest.approx([-(1 + e) * v[0] / D[0, 0]] * 3)
+
+
+def test_the_impulses_grow_as_small_steps_of_coulombs_law_say():
+    """(v_n, v_t) after it within 1 % of an explicit integration by the normal impulse."""
+    rng = np.random.default_rng(5)
+    for _ in range(60):
+        D, v, mu, e = random_rod(rng)
+        for law in ("newton", "poisson", "energetic"):
+            after = v + D @ np.array(routh(D, v, mu=mu, e=e, law=law))
+            assert after == pytest.approx(stepped_impact(D, v, mu, e, law), abs=0.01 * (abs(v[0]) + abs(v[1])))
+
+
+def test_an_impact_with_much_friction_jams_and_is_named():
+    """Painleve: 1/m + (x^2 - mu |x y|)/I < 0, and v_t grows: no impulse ends the approach."""
+    D = np.array([[1.0, -0.9], [-0.9, 1.0]])
+    with pytest.raises(DerivationError, match="'tip' jams in its impact"):
+        routh(np.array([[1.0, 2.0], [2.0, 1.0]]), (-1.0, 1.0), mu=0.6, e=0.5, name="tip")
+    assert routh(D, (-1.0, 0.0), mu=0.2, e=0.0)[0] > 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("law", ["newton", "poisson", "energetic"])
+def test_a_rough_dumbbell_leaves_the_floor_as_each_law_says(law):
+    """The run's impact is that of the graph, and the proof's small steps agree."""
+    text = DUMBBELL.replace('restitution = "e"', 'restitution = "e"\nfriction = 0.3') + f'[impact]\nlaw = "{law}"\n'
+    result = run(text.replace("x = {}", "x = { speed = -1 }"), 0.46)
+    x, y = -math.cos(0.5) / 2, -math.sin(0.5) / 2
+    D = np.array([[0.5 + x * x / 0.5, -x * y / 0.5], [-x * y / 0.5, 0.5 + y * y / 0.5]])
+    p = routh(D, (-math.sqrt(2 * G), -1.0), mu=0.3, e=0.5, law=law)
+    impulses = result.impacts[0].impulses
+    assert (impulses["floor"], impulses["floor t"]) == pytest.approx(p, rel=1e-8)
+    assert result.certify().ok
+
+
+def test_a_ball_that_spins_comes_to_roll_in_its_impacts():
+    """x' - r phi' ... sticks in the second impact: p_t = -(x' + r phi')/(1/m + r^2/I), from then on it rolls."""
+    text = BALL.replace('kind = "particle", mass = "m"', 'kind = "disc", mass = "m", radius = 0.1')
+    text = text.replace('kind = "placed", at = ["x", "y"]', 'kind = "planar", x = "x", y = "y", angle = "phi"')
+    text = text.replace('y = { start = "h" }', 'y = { start = "h" }, phi = { speed = 40 }')
+    text = text.replace('kind = "support"\npoint = "ball.origin"\nnormal = [0, 1]\nat = [0, 0]', ROLLING)
+    result = run(text, 2.0)
+    first, second = result.impacts[:2]
+    v = math.sqrt(2 * G * 0.9)
+    assert first.impulses["floor t"] == pytest.approx(-0.2 * 1.6 * v, rel=1e-9)
+    slides = 1 + 4 - 3 * 0.2 * 1.6 * v
+    assert second.impulses["floor t"] == pytest.approx(-slides / 3, rel=1e-8)
+    assert result["x'"][-1] == pytest.approx(-0.1 * result["phi'"][-1], abs=1e-9)
+
+
+ROLLING = """kind = "rolling"
+body = "ball"
+line = { at = [0, 0], normal = [0, 1] }
+slip = true
+friction = 0.2"""
+
+
+def test_a_cradle_hit_one_after_the_other_passes_the_speed_on():
+    """e = 1: (0, 0, v)."""
+    hits = [Hit("a", np.array([[-1.0, 1, 0, 0]]), 1.0), Hit("b", np.array([[0, -1.0, 1, 0]]), 1.0)]
+    law = ImpactLaw(order="sequential")
+    after = jump(np.eye(3), np.zeros((0, 4)), hits, np.array([1.0, 0, 0]), law)
+    assert after.u == pytest.approx(np.array([0, 0, 1]), abs=1e-12)
+
+
+def test_where_the_order_of_equal_impacts_decides_that_is_said():
+    """A heavy ball between two light ones that meet it equally fast, e = 1/2."""
+    hits = [Hit("a", np.array([[-1.0, 1, 0, 0]]), 0.5), Hit("b", np.array([[0, -1.0, 1, 0]]), 0.5)]
+    with pytest.raises(DerivationError, match="the order of their impacts decides"):
+        jump(np.diag([1.0, 3, 1]), np.zeros((0, 4)), hits, np.array([1.0, 0, -1]), ImpactLaw(order="sequential"))
+
+
+def test_poissons_law_of_a_cradle_is_newtons():
+    """One e: (-e - 2/3 ...): compression to v/3, then e times its impulses."""
+    hits = [Hit("a", np.array([[-1.0, 1, 0, 0]]), 0.7), Hit("b", np.array([[0, -1.0, 1, 0]]), 0.7)]
+    u, held = np.array([1.0, 0, 0]), np.zeros((0, 4))
+    assert jump(np.eye(3), held, hits, u, ImpactLaw("poisson")).u == pytest.approx(jump(np.eye(3), held, hits, u).u)
+
+
 # -- what is refused -------------------------------------------------------------------------------
 
 
@@ -296,3 +405,21 @@ def test_a_restitution_that_gains_energy_is_refused():
         result = run(BALL.replace("e = 0.6", "e = 1.2"), 1)
         if not result.ok:
             raise DerivationError(result.message)
+
+
+def test_friction_at_several_contacts_at_once_and_in_space_is_refused():
+    rough = Hit("a", np.array([[0.0, 1, 0]]), 0.5, False, 0.3, np.array([1.0, 0, 0]))
+    other = Hit("b", np.array([[1.0, 0, 0]]), 0.5)
+    with pytest.raises(DerivationError, match="several contacts at once"):
+        jump(np.eye(2), np.zeros((0, 3)), [rough, other], np.array([-1.0, -1]))
+    with pytest.raises(DerivationError, match="in space"):
+        jump(np.eye(2), np.zeros((0, 3)), [Hit("a", rough.rows, 0.5, False, 0.3)], np.array([-1.0, -1]))
+    both = [other, Hit("c", rough.rows, 0.5)]
+    with pytest.raises(DerivationError, match="the energetic law is one of single contacts"):
+        jump(
+            np.eye(2),
+            np.zeros((0, 3)),
+            [other, Hit("c", rough.rows, 0.5)],
+            np.array([-1.0, -1]),
+            ImpactLaw("energetic"),
+        )

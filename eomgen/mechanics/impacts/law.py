@@ -14,8 +14,9 @@ Source: Moreau, Unilateral contact and dry friction in finite freedom dynamics (
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
-from dataclasses import field
+from dataclasses import field, replace
 from itertools import combinations
 
 import numpy as np
@@ -25,6 +26,7 @@ from eomgen.frozen import dataclass
 from eomgen.symbolic.numeric import tolerances
 
 MOST_PIVOTS = 1000  # of a complementarity problem
+MOST_IMPACTS = 20_000  # one after the other at one instant
 
 
 @dataclass(frozen=True)
@@ -36,12 +38,16 @@ class Hit:
         rows: (J, sigma) of its rows, k x (n + 1); the first can only push, the others hold while it pushes.
         e: its coefficient of restitution.
         rests: it comes to rest here, as it would after bounces without end: all of its rows hold.
+        mu: of its friction in the impact; 0: none.
+        tangent: (J, sigma) of the sliding velocity, n + 1; None: it has none.
     """
 
     name: str
     rows: np.ndarray
     e: float = 0.0
     rests: bool = False
+    mu: float = 0.0
+    tangent: np.ndarray | None = None
 
     def speed(self, u: np.ndarray) -> float:
         """v = J u + sigma of the first row; negative where it is approached."""
@@ -56,23 +62,135 @@ class Jump:
         u: the speeds after it.
         impulses: of each contact that touches its rows' impulses; nan where one has no single value.
         held: those of the constraints' rows.
+        friction: of each contact with friction the impulse along its tangent.
     """
 
     u: np.ndarray
     impulses: dict[str, np.ndarray] = field(default_factory=dict)
     held: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    friction: dict[str, float] = field(default_factory=dict)
 
 
-def jump(M: np.ndarray, held: np.ndarray, touching: Sequence[Hit], u: np.ndarray) -> Jump:
-    """Speeds after the impact of all contacts that touch, at once, and the impulses.
+NEWTON, POISSON, ENERGETIC = "newton", "poisson", "energetic"
+SIMULTANEOUS, SEQUENTIAL = "simultaneous", "sequential"
 
-    Contacts with further rows (rolling ones) hold these only while they push: of all sets of such contacts the first
-    that agrees is taken, the largest before smaller ones.
+
+@dataclass(frozen=True)
+class ImpactLaw:
+    """Where restitution ends, and the order of what happens at one instant.
+
+    Args:
+        law: "newton" (v+ = -e v-), "poisson" (an impulse e times that of the compression), "energetic" (work e^2 times
+            that of the compression).
+        order: all contacts at once, or one after the other, the one approached fastest first.
+    """
+
+    law: str = NEWTON
+    order: str = SIMULTANEOUS
+
+
+def jump(M: np.ndarray, held: np.ndarray, touching: Sequence[Hit], u: np.ndarray, law: ImpactLaw | None = None) -> Jump:
+    """Speeds after the impact of the contacts that touch, and the impulses.
 
     Args:
         held: (J, sigma) of the constraints, k x (n + 1).
+        law: None: Newton's, all at once.
     Raises:
-        DerivationError: no impulses satisfy the law.
+        DerivationError: no impulses satisfy the law, or it says nothing on this.
+    """
+    law = law or ImpactLaw()
+    if law.order == SEQUENTIAL:
+        return _one_by_one(M, held, touching, u, law.law)
+    if any(hit.mu and not hit.rests for hit in touching):
+        return _rough(M, held, touching, u, law.law)
+    if law.law == NEWTON or sum(not hit.rests for hit in touching) < 2:
+        return _at_once(M, held, touching, u)
+    if law.law == ENERGETIC:
+        raise DerivationError(
+            f"the energetic law is one of single contacts, and {_names(touching)} touch at once",
+            "impact",
+            'law = "newton" or "poisson", or order = "sequential"',
+        )
+    return _compressed(M, held, touching, u)
+
+
+def _names(touching: Sequence[Hit]) -> str:
+    return ", ".join(f"'{hit.name}'" for hit in touching)
+
+
+def _compressed(M: np.ndarray, held: np.ndarray, touching: Sequence[Hit], u: np.ndarray) -> Jump:
+    """The jump by Poisson's law of all contacts: compression to rest, then e times its impulses, or more where needed.
+
+    Source: Pfeiffer & Glocker, Multibody Dynamics with Unilateral Contacts (1996), ch. 8.
+    """
+    first = _at_once(M, held, [replace(hit, e=0.0) for hit in touching], u)
+    if any(not np.all(np.isfinite(x)) for x in first.impulses.values()):
+        raise DerivationError(
+            f"the impulses of {_names(touching)} in the compression have no single value, and Poisson's law needs them",
+            "impact",
+            'law = "newton"',
+        )
+    returned = {hit.name: hit.e * first.impulses[hit.name] for hit in touching}
+    J = np.vstack([held[:, :-1], *(hit.rows[:, :-1] for hit in touching)])
+    given = np.concatenate([np.zeros(len(held)), *(returned[hit.name] for hit in touching)])
+    thrown = first.u + np.linalg.solve(M, J.T @ given)
+    second = _at_once(M, held, [replace(hit, e=0.0) for hit in touching], thrown)
+    impulses = {name: x + returned[name] + second.impulses[name] for name, x in first.impulses.items()}
+    return Jump(second.u, impulses, first.held + second.held)
+
+
+def _one_by_one(M: np.ndarray, held: np.ndarray, touching: Sequence[Hit], u: np.ndarray, law: str) -> Jump:
+    """The jump of one contact after the other, the one approached fastest first, until none is approached.
+
+    Raises:
+        DerivationError: two are approached equally fast, and their order decides; or it does not end.
+    """
+    found = [_sequence(M, held, touching, u, law, first) for first in (1, -1)]
+    apart = float(np.max(np.abs(found[0].u - found[1].u), initial=0.0))
+    if apart > tolerances.CARRIED * _size(u):
+        raise DerivationError(
+            f"{_names(touching)} are approached equally fast, and the order of their impacts decides what follows",
+            "impact",
+            'order = "simultaneous", or a start in which one is hit first',
+        )
+    return found[0]
+
+
+def _sequence(M: np.ndarray, held: np.ndarray, touching: Sequence[Hit], u: np.ndarray, law: str, first: int) -> Jump:
+    """The jump where of contacts approached equally fast the first (1) or the last (-1) is hit."""
+    size = _size(u)
+    impulses = {hit.name: np.zeros(len(hit.rows)) for hit in touching}
+    friction = {hit.name: 0.0 for hit in touching if hit.mu}
+    of_held, resting = np.zeros(len(held)), [hit for hit in touching if hit.rests]
+    now, others = (_at_once(M, held, resting, u).u if resting else u), [hit for hit in touching if not hit.rests]
+    for _ in range(MOST_IMPACTS):
+        speeds = [hit.speed(now) for hit in others]
+        fastest = min(speeds, default=0.0)
+        if fastest >= -tolerances.COMPUTED * size:
+            return Jump(now, impulses, of_held, friction)
+        equal = [h for h, v in zip(others, speeds, strict=True) if v <= fastest + tolerances.SOLVED * size]
+        hit = equal[0 if first > 0 else -1]
+        after = jump(M, held, [hit], now, ImpactLaw(law))
+        now, of_held = after.u, of_held + after.held
+        impulses[hit.name] = impulses[hit.name] + after.impulses[hit.name]
+        for name, x in after.friction.items():
+            friction[name] += x
+    raise DerivationError(
+        f"after {MOST_IMPACTS} impacts at one instant {_names(touching)} are still approached",
+        "impact",
+        'order = "simultaneous", or a larger restitution',
+    )
+
+
+def _size(u: np.ndarray) -> float:
+    return max(1.0, float(np.max(np.abs(u), initial=0.0)))
+
+
+def _at_once(M: np.ndarray, held: np.ndarray, touching: Sequence[Hit], u: np.ndarray) -> Jump:
+    """The jump by Newton's law, without friction.
+
+    Contacts with further rows (rolling ones) hold these only while they push: of all sets of such contacts the first
+    that agrees is taken, the largest before smaller ones.
     """
     resting = [hit for hit in touching if hit.rests]
     space = _Space.of(M, np.vstack([held, *(hit.rows for hit in resting)]).reshape(-1, len(u) + 1), u)
@@ -87,9 +205,8 @@ def jump(M: np.ndarray, held: np.ndarray, touching: Sequence[Hit], u: np.ndarray
                 ends = np.cumsum([len(held), *(len(hit.rows) for hit in resting)])
                 own = dict(zip((hit.name for hit in resting), np.split(found.held, ends)[1:], strict=False))
                 return Jump(found.u, {**zeros, **found.impulses, **own}, found.held[: len(held)])
-    names = ", ".join(f"'{hit.name}'" for hit in touching)
     raise DerivationError(
-        f"no impulses of the contacts {names} satisfy the law of impact",
+        f"no impulses of the contacts {_names(touching)} satisfy the law of impact",
         fix="other restitutions, or let the contacts close one after the other",
     )
 
@@ -244,3 +361,134 @@ def _solved(table: np.ndarray, basis: list[int]) -> np.ndarray:
     found = np.zeros(2 * n + 1)
     found[basis] = table[:, -1]
     return np.maximum(found[n : 2 * n], 0.0)
+
+
+# -------- friction --------------------------------------------------------------------------------------------
+# One contact with friction in the plane: the impulses grow from 0, the normal one p steadily (Routh's graph).
+#
+#     v_n' = D_nn + D_nt F,   v_t' = D_nt + D_tt F       by p, D = [n; t] M^-1 [n; t]^T
+#     slides:  F = - mu sign(v_t)       sticks:  F = - D_nt/D_tt where |D_nt/D_tt| <= mu
+#
+# Compression ends where v_n = 0. Restitution ends, with e, where
+#
+#     Newton  v_n = - e v_n(0)     Poisson  p = (1 + e) p_c     Stronge  W = W_c - e^2 W_c,   W = integral of v_n dp
+#
+# Source: Routh, Dynamics of a System of Rigid Bodies, Elementary Part (1905), art. 187-198; Stronge, Impact Mechanics
+# (2000), ch. 8.
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A stretch of an impact in which friction stays the same: v_n, v_t at its begin, their slopes by p, and F."""
+
+    v: tuple[float, float]
+    slope: tuple[float, float]
+    F: float
+    p: float
+
+
+def _rough(M: np.ndarray, held: np.ndarray, touching: Sequence[Hit], u: np.ndarray, law: str) -> Jump:
+    """The jump of one contact with friction.
+
+    Raises:
+        DerivationError: others touch, it is in space, or it jams.
+    """
+    moving = [hit for hit in touching if not hit.rests]
+    if len(moving) > 1:
+        raise DerivationError(
+            f"friction in an impact of several contacts at once ({_names(moving)}) is not derived",
+            "impact",
+            'order = "sequential", or no restitution and no friction of them',
+        )
+    (hit,) = moving
+    if hit.tangent is None:
+        raise DerivationError(
+            f"friction in an impact in space ('{hit.name}') is not derived",
+            f"constraints.{hit.name}",
+            "leave out its restitution and [impact]: then friction has no part in impacts",
+        )
+    space = _Space.of(M, np.vstack([held, *(h.rows for h in touching if h.rests)]).reshape(-1, len(u) + 1), u)
+    rows = np.array([hit.rows[0], hit.tangent])
+    A_H = space.whitened(space.held)
+    back, w = _inverse(A_H), space.L.T @ u
+    w = w - back @ (A_H @ w + space.held[:, -1])
+    A = space.whitened(rows) @ (np.eye(len(u)) - back @ A_H)
+    v = A @ w + rows[:, -1]
+    p = routh(A @ A.T, (float(v[0]), float(v[1])), mu=hit.mu, e=hit.e, law=law, name=hit.name)
+    after = w + A.T @ np.array(p)
+    of_held = back.T @ (after - space.L.T @ u - space.whitened(rows).T @ np.array(p))
+    of_held[~_determined(A_H)] = np.nan
+    found = np.linalg.solve(space.L.T, after)
+    others = {h.name: np.full(len(h.rows), np.nan) for h in touching if h.rests}
+    return Jump(found, {**others, hit.name: np.array([p[0]])}, of_held[: len(held)], {hit.name: p[1]})
+
+
+def routh(
+    D: np.ndarray, v: tuple[float, float], *, mu: float, e: float, law: str = POISSON, name: str = ""
+) -> tuple[float, float]:
+    """(normal impulse, tangential impulse) of an impact with friction in the plane.
+
+    Args:
+        D: 2 x 2, of the speeds (v_n, v_t) for unit impulses [1/kg].
+        v: v_n < 0 and v_t before.
+        name: of the contact, for messages.
+    Raises:
+        DerivationError: it jams: no impulse ends the compression, or the restitution.
+    """
+    if v[0] >= 0:
+        return 0.0, 0.0
+    p, p_t, W, p_c, W_c = 0.0, 0.0, 0.0, math.nan, math.nan
+    begun = v[0]
+    for _ in range(MOST_PIECES):
+        F, slope = _sliding(D, v[1], mu)
+        to_stick = -v[1] / slope[1] if v[1] * slope[1] < 0 else math.inf
+        if math.isnan(p_c):
+            to_rest = -v[0] / slope[0] if slope[0] > 0 else math.inf
+            end = min(to_rest, to_stick)
+        else:
+            end = min(_left(law, e, begun=begun, v=v[0], slope=slope[0], p=(p, p_c), W=(W, W_c)), to_stick)
+        if not math.isfinite(end):
+            what = f"'{name}' jams in its impact: with mu = {mu:.4g} no impulse ends the approach"
+            raise DerivationError(what, f"constraints.{name}", "less friction, or another position (Painleve)")
+        W += v[0] * end + slope[0] * end * end / 2
+        v_n, v_t = v[0] + slope[0] * end, v[1] + slope[1] * end
+        p, p_t = p + end, p_t + F * end
+        if end == to_stick:
+            v = (v_n, 0.0)
+        elif math.isnan(p_c):
+            v, p_c, W_c = (0.0, v_t), p, W
+        else:
+            return p, p_t
+        if e == 0 and not math.isnan(p_c):
+            return p, p_t
+    raise DerivationError(f"the impact of '{name}' does not end", f"constraints.{name}", "another restitution")
+
+
+MOST_PIECES = 20  # of an impact with friction: compression, sliding, sticking, sliding back, restitution
+
+
+def _sliding(D: np.ndarray, v_t: float, mu: float) -> tuple[float, tuple[float, float]]:
+    """(F, slopes of v_n and v_t by p) with friction F for a unit of the normal impulse."""
+    nn, nt, tt = float(D[0, 0]), float(D[0, 1]), float(D[1, 1])
+    if v_t == 0 and abs(nt) <= mu * tt:
+        F = -nt / tt if tt else 0.0
+        return F, (nn + nt * F, 0.0)
+    sense = math.copysign(1.0, v_t if v_t else nt)
+    F = -mu * sense
+    return F, (nn + nt * F, nt + tt * F)
+
+
+def _left(
+    law: str, e: float, *, begun: float, v: float, slope: float, p: tuple[float, float], W: tuple[float, float]
+) -> float:
+    """Normal impulse that is left to the end of the restitution; inf where the law is not met with these slopes."""
+    if law == POISSON:
+        return (1 + e) * p[1] - p[0]
+    if law == NEWTON:
+        return (-e * begun - v) / slope if slope > 0 else math.inf
+    missing = W[1] * (1 - e * e) - W[0]  # v x + slope x^2/2 = missing, the first root above 0
+    discriminant = v * v + 2 * slope * missing
+    if discriminant < 0 or missing < 0:
+        return 0.0 if missing < 0 else math.inf
+    root = math.sqrt(discriminant)
+    return 2 * missing / (v + root) if v + root > 0 else math.inf
