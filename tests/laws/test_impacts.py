@@ -416,10 +416,4 @@ def test_friction_at_several_contacts_at_once_and_in_space_is_refused():
         jump(np.eye(2), np.zeros((0, 3)), [Hit("a", rough.rows, 0.5, False, 0.3)], np.array([-1.0, -1]))
     both = [other, Hit("c", rough.rows, 0.5)]
     with pytest.raises(DerivationError, match="the energetic law is one of single contacts"):
-        jump(
-            np.eye(2),
-            np.zeros((0, 3)),
-            [other, Hit("c", rough.rows, 0.5)],
-            np.array([-1.0, -1]),
-            ImpactLaw("energetic"),
-        )
+        jump(np.eye(2), np.zeros((0, 3)), both, np.array([-1.0, -1]), ImpactLaw("energetic"))
