@@ -24,7 +24,7 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Row, rows_of_constraint
 from eomgen.mechanics.dynamics import System, assembled_by_recursion
-from eomgen.mechanics.impacts import NEWTON, POISSON, Hit, ImpactLaw, Jump, jump
+from eomgen.mechanics.impacts import Hit, ImpactLaw, Jump, jump
 from eomgen.mechanics.kinematics import SystemInertia
 from eomgen.model import Contact
 from eomgen.simulation.phase_model import PhaseModel, Values
@@ -82,7 +82,8 @@ class WithoutContacts:
             for name in touching
         ]
         u = x[len(self.system.symbols.q) :][:nu]
-        after = jump(M, rows[:k], hits, u, self.law_of(hits))
+        rough = any(hit.mu and not hit.rests for hit in hits)
+        after = jump(M, rows[:k], hits, u, ImpactLaw.of(self.system.scope.model.impact, rough))
         size = tolerances.COMPUTED * max(1.0, float(np.max(np.abs(u), initial=0.0)))
         approached = [hit.name for hit in hits if hit.speed(u) < -size]
         impact = Impact(t, ", ".join(approached), self._named(after), self._lost(t, x, after.u))
@@ -107,12 +108,6 @@ class WithoutContacts:
                 what = f"the restitution of '{name}' is {e:.6g}"
                 raise DerivationError(what, f"constraints.{name}", "between 0 (no rebound) and 1 (no loss)")
         return dict(zip(contacts, found.tolist(), strict=True))
-
-    def law_of(self, hits: Sequence[Hit]) -> ImpactLaw:
-        """The declared law; Newton's where none is, and of contacts with friction Poisson's."""
-        rules = self.system.scope.model.impact
-        usual = POISSON if any(hit.mu and not hit.rests for hit in hits) else NEWTON
-        return ImpactLaw(usual) if rules is None else ImpactLaw(rules.law or usual, rules.order)
 
     @property
     def _in_space(self) -> bool:

@@ -1,9 +1,5 @@
 """Door of the folder: what other folders may import from `eomgen.mechanics.impacts`."""
 
-# Names of laws: where restitution ends
-from eomgen.mechanics.impacts.law import NEWTON as NEWTON
-from eomgen.mechanics.impacts.law import POISSON as POISSON
-
 # One contact that touches in an impact: its rows, its restitution
 from eomgen.mechanics.impacts.law import Hit as Hit
 

@@ -18,6 +18,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import field, replace
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 
@@ -77,7 +78,7 @@ SIMULTANEOUS, SEQUENTIAL = "simultaneous", "sequential"
 
 @dataclass(frozen=True)
 class ImpactLaw:
-    """Where restitution ends, and the order of what happens at one instant.
+    """Law by which restitution ends, and the order of what happens at one instant.
 
     Args:
         law: "newton" (v+ = -e v-), "poisson" (an impulse e times that of the compression), "energetic" (work e^2 times
@@ -87,6 +88,12 @@ class ImpactLaw:
 
     law: str = NEWTON
     order: str = SIMULTANEOUS
+
+    @staticmethod
+    def of(rules: Any, rough: bool) -> ImpactLaw:
+        """The declared law; where none is, Newton's, and of contacts with friction Poisson's."""
+        usual = POISSON if rough else NEWTON
+        return ImpactLaw(usual) if rules is None else ImpactLaw(rules.law or usual, rules.order)
 
 
 def jump(M: np.ndarray, held: np.ndarray, touching: Sequence[Hit], u: np.ndarray, law: ImpactLaw | None = None) -> Jump:
