@@ -9,12 +9,11 @@ from collections.abc import Iterable, Sequence
 from functools import cached_property
 from typing import Any
 
-from eomgen.errors import ExpressionError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import Motion
 from eomgen.model import Couple, PointForce, in_order
-from eomgen.symbolic.expression import Matrix, Scalar, State, Vector
+from eomgen.symbolic.expression import Graph, Matrix, Scalar, State, Vector
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 
 SAMPLES = "times of samples"
@@ -45,20 +44,23 @@ def with_inputs(system: System, known: State) -> State:
 def declared_state_rates(system: System, known: State) -> dict[str, Any]:
     """{state: z'} of the states of first order at a state with its accelerations, by the file's own texts.
 
-    Each name in a text is put in as a number, the rate of another state by its own text: no graph stands between.
+    Each name in a text is put in as a number, the rate of another state by its own text: nothing of the system's graph
+    stands between.
     """
     names = system.scope.names
     laws = {f"{name}'": part.rate for name, part in system.scope.model.states.items()}
-    standing = {"pi"}.union(*(law.names for law in laws.values()))
+    standing = frozenset[str]().union(*(law.names for law in laws.values())) - {"pi"}
     needed = tuple(standing & names.keys() - laws.keys())
-    numbers = evaluate(tuple(names[name] for name in needed), known, fifty_digits())
-    found = dict(zip(needed, numbers, strict=True))
+    graph, digits = Graph(), fifty_digits()
+    own = {name: graph.symbol(name) for name in standing}
+    values = dict(zip((own[x] for x in needed), evaluate([names[x] for x in needed], known, digits), strict=True))
+    found: dict[str, Any] = {}
     for name in in_order(laws)[0]:
-        try:
-            found[name] = laws[name].evaluate(found)
-        except ExpressionError as error:
-            raise NoValue(f"{name} has no value there: {error.what}") from error
-    return {name[:-1]: found[name] for name in laws}
+        scalar = laws[name].evaluate({**own, "pi": graph.pi})
+        found[name[:-1]] = evaluate((scalar,), values, digits)[0]
+        if name in own:
+            values[own[name]] = found[name[:-1]]
+    return {name: found[name] for name in system.scope.model.states}
 
 
 @dataclass(frozen=True)
