@@ -210,7 +210,7 @@ def test_multipliers_are_the_reactions_that_they_are_said_to_be(name):
     symbols, graph = system.symbols, derived.graph
     state = {
         x: rng.uniform(0.4, 1.1)
-        for x in (*symbols.q, *symbols.u, *symbols.parameters.values(), symbols.t, *symbols.inputs.values())
+        for x in (*symbols.x, *symbols.parameters.values(), symbols.t, *symbols.inputs.values())
     }
     M, J = (np.array(evaluate([x for row in rows for x in row], state, FLOAT)) for rows in (graph.M, graph.J))
     n, k = len(graph.M), len(graph.J)

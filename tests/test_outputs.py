@@ -97,7 +97,7 @@ class Motion:
         self.system = system_of(self.model)
         symbols, rng = self.system.symbols, Random(seed)
         self.state = {}
-        for node in (symbols.t, *symbols.parameters.values(), *symbols.q, *symbols.u, *symbols.a):
+        for node in (symbols.t, *symbols.parameters.values(), *symbols.x, *symbols.a):
             self.state[node] = rng.uniform(0.3, 1.2)
 
     def scalar(self, text: str):

@@ -124,7 +124,7 @@ def states(equations: Equations, count: int = 6) -> tuple[np.ndarray, np.ndarray
     """(t, x, p) of random states on the constraints."""
     symbols = equations.graph.symbols
     found = [Closure(equations.system.constraints).generic(Random(seed)) for seed in range(count)]
-    rows = np.array([[float(state[s]) for s in (symbols.t, *symbols.q, *symbols.u)] for state in found])
+    rows = np.array([[float(state[s]) for s in (symbols.t, *symbols.x)] for state in found])
     p = np.array([float(found[0][s]) for s in symbols.parameters.values()])
     return rows[:, 0], rows[:, 1:], p
 

@@ -62,7 +62,7 @@ def test_a_displacement_stands_last_and_its_rate_is_that_of_the_gap():
     assert [q.name for q in after.symbols.q] == ["s", "theta", "wire_gap"]
     (row,) = rows_of_constraint(after.motion, "wire")
     numbers = [0.3, 0.7, 0.2, 0.5, -0.4, 0.9]
-    state = dict(zip((*after.symbols.q, *after.symbols.u), numbers, strict=True))
+    state = dict(zip(after.symbols.x, numbers, strict=True))
     state |= {node: 1.0 for node in after.symbols.parameters.values()}
     gap = (row.gap, *after.scope.time_derivative((row.gap,)))
     assert status(after, "wire") == set() and evaluate(gap, state, FLOAT) == pytest.approx([0.18, 0.8 * 0.9])

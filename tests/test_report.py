@@ -191,7 +191,7 @@ def test_printed_derivatives_are_derivatives_of_the_printed_kinetic_energy(name)
 def _printed_system(derived: Equations) -> System:
     """The system that the derivatives are printed of: the free one where dependent rates stand in them."""
     by = {of.by for f in _derivatives(in_time(derived)) for of in f.sides if isinstance(of, Partial)}
-    return derived.system if by <= {*derived.system.symbols.q, *derived.system.symbols.u} else free_system(derived)
+    return derived.system if by <= {*derived.system.symbols.x} else free_system(derived)
 
 
 def _derivatives(derivation: Document) -> list[Formula]:

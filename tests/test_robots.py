@@ -264,7 +264,7 @@ def test_ties_of_bodies_without_places_and_straight_tendons_mean_what_mujoco_com
         data.qpos[:], data.qvel[:] = rng.normal(size=4), rng.normal(size=4)
         mujoco.mj_forward(compiled, data)
         q, u = dict(zip(names, data.qpos, strict=True)), {f"{n}'": v for n, v in zip(names, data.qvel, strict=True)}
-        known = {x: (q | u)[x.name] for x in (*graph.symbols.q, *graph.symbols.u)} | {graph.symbols.t: 0.0}
+        known = {x: (q | u)[x.name] for x in graph.symbols.x} | {graph.symbols.t: 0.0}
         known |= {x: 9.81 for x in graph.symbols.parameters.values()}
         Q = np.array(evaluate([y - x for x, y in zip(graph.c, graph.Q, strict=True)], known, FLOAT), dtype=float)
         assert np.allclose(Q, data.qfrc_passive - data.qfrc_bias, atol=1e-10)

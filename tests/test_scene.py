@@ -42,7 +42,9 @@ class Reader:
     def __init__(self, scene: Scene, shift: float = 0.0) -> None:
         state = drawn_start(scene.system)
         unit = {e for four in scene.system.scope.quaternions for e in four}
-        free = [node not in unit for node in scene.system.symbols.q] + [False] * len(scene.system.symbols.u)
+        free = [node not in unit for node in scene.system.symbols.q] + [False] * len(
+            scene.system.symbols.x[len(scene.system.symbols.q) :]
+        )
         x = state.x + shift * np.sin(1 + np.arange(len(state.x))) * free
         self.data: dict[str, Any] = json.loads(json.dumps(scene.to_json()))
         self.state = type(state)(0.3 * shift, x, state.p)
@@ -91,7 +93,7 @@ def test_a_scene_shows_bodies_where_mechanics_has_them(name):
     scene = scene_named(name)
     reader, system = Reader(scene, shift=0.2), scene.system
     symbols, motion = system.symbols, system.motion
-    numbers = dict(zip((*symbols.q, *symbols.u), reader.state.x, strict=True)) | {symbols.t: reader.state.t}
+    numbers = dict(zip(symbols.x, reader.state.x, strict=True)) | {symbols.t: reader.state.t}
     numbers |= dict(zip(symbols.parameters.values(), reader.state.p, strict=True))
     place = {each["name"]: reader.spot(each["at"]) for each in reader.data["points"]}
     assert all(each["parent"] < k for k, each in enumerate(reader.data["frames"]))
@@ -128,7 +130,7 @@ def test_the_symbol_of_a_joint_is_where_both_bodies_have_it(name):
     joints = [m for m in reader.data["marks"] if m["kind"] == "symbol" and m["of"] in motion.index]
     assert joints
     symbols = scene.system.symbols
-    numbers = dict(zip((*symbols.q, *symbols.u), reader.state.x, strict=True)) | {symbols.t: 0.0}
+    numbers = dict(zip(symbols.x, reader.state.x, strict=True)) | {symbols.t: 0.0}
     numbers |= dict(zip(symbols.parameters.values(), reader.state.p, strict=True))
     for mark in joints:
         link = motion.link(mark["of"])

@@ -236,7 +236,7 @@ def test_states_at_which_dependent_rows_contradict_each_other_are_no_test_vector
     symbols = graph.system.symbols
     for vector in json.loads(eomgen.generate(model, ("c",)).texts["test_vectors.json"])["vectors"]:
         values = dict(zip(symbols.parameters.values(), vector["p"], strict=True))
-        values |= dict(zip((symbols.t, *symbols.q, *symbols.u), (vector["t"], *vector["x"]), strict=True))
+        values |= dict(zip((symbols.t, *symbols.x), (vector["t"], *vector["x"]), strict=True))
         a = np.array(vector["dx"][-n:])
         J = np.array([evaluate(row, values, FLOAT) for row in graph.J])
         open_by = J @ a + evaluate(graph.gamma, values, FLOAT)

@@ -241,7 +241,7 @@ def test_the_start_that_ties_complete_is_one_for_every_verb(text):
     """The rope gives, or changes, speeds: laws of motion, x0, runs and the table of `derive` begin with the same."""
     model = eomgen.loads(text)
     equations, run = eomgen.derive(model), eomgen.simulate(model, time=0.1, samples=2, target="numpy")
-    x0 = dict(zip((*equations.graph.symbols.q, *equations.graph.symbols.u), equations.start(), strict=True))
+    x0 = dict(zip(equations.graph.symbols.x, equations.start(), strict=True))
     start = ExactStart(equations.system)
     assert start.is_exact
     known = {equations.graph.symbols.parameters[n]: float(x) for n, x in model.exact_parameters().items()}

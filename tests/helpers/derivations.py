@@ -235,7 +235,7 @@ def read_back(text: str, equations: Equations, also: dict[str, Scalar] | None = 
     symbols = equations.graph.symbols
     free = free_system(equations).symbols
     own = (symbols.t, *symbols.parameters.values(), *symbols.inputs.values(), *symbols.q, *free.u, *free.a)
-    own += (*symbols.u, *symbols.a)
+    own += (*symbols.u, *symbols.a, *symbols.z)
     names: dict[str, Any] = {symbol.name: symbol for symbol in own}
     multipliers = {symbol.name: symbol for symbol in symbols.lam}
     expression = parse(text, references=True, longest=2_000_000)
@@ -292,5 +292,5 @@ def residuals(equations: Equations) -> list[Scalar]:
 def symbols_named(equations: Equations) -> dict[str, Node]:
     """Every symbol of the equations by its name."""
     s, free = equations.graph.symbols, free_system(equations).symbols
-    own = (s.t, *s.parameters.values(), *s.inputs.values(), *s.q, *free.u, *free.a, *s.u, *s.a, *s.lam)
+    own = (s.t, *s.parameters.values(), *s.inputs.values(), *s.q, *free.u, *free.a, *s.u, *s.a, *s.z, *s.lam)
     return {symbol.name: symbol for symbol in own}

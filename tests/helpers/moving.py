@@ -38,8 +38,8 @@ def solved(system: System, values: dict[str, float]) -> tuple[np.ndarray, np.nda
     """(a, lam) of M a = forcing + J^T lam, J a + gamma = 0 at a state; what is not named is 0."""
     equations = recursive.assembled_by_recursion(system)
     symbols = system.symbols
-    state = {s: fifty_digits().number(0) for s in (*symbols.q, *symbols.u, symbols.t)}
-    by_name = symbols.parameters | {s.name: s for s in (*symbols.q, *symbols.u)}
+    state = {s: fifty_digits().number(0) for s in (*symbols.x, symbols.t)}
+    by_name = symbols.parameters | {s.name: s for s in symbols.x}
     state |= {by_name[name]: fifty_digits().number(1) * value for name, value in values.items()}
     M, J = (np.array([at(row, state) for row in rows]) for rows in (equations.M, equations.J))
     n, k = len(M), len(J)

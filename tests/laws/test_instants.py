@@ -176,7 +176,7 @@ def requested(text: str, condition: str) -> tuple[Study, StateAtInstant]:
     numbers: dict = {}
     if not any(part.value is None for part in each.model.parameters.values()):
         values = Start.of(each.system).values
-        numbers = {node: values[node.name] for node in (*symbols.q, *symbols.u)}
+        numbers = {node: values[node.name] for node in symbols.x}
         start |= exact_places(each, start, numbers)
     scalar = each.of_state(parse(condition, references=True))
     return each, reached(each, scalar, start, numbers)
@@ -344,7 +344,7 @@ def test_the_numbers_are_those_of_an_integration_and_keep_the_energy(name):
     text, condition, _, _ = KNOWN[name]
     each, instant = requested(text, condition)
     symbols = each.system.symbols
-    nodes = (*symbols.q, *symbols.u)
+    nodes = symbols.x
     values = {symbols.parameters[n]: x for n, x in each.model.numeric_parameters().items()}
     first = Start.of(each.system).values
     for integral in FirstIntegrals(each.equations).of_energy:

@@ -238,7 +238,7 @@ def motion(each: Study, end: float) -> tuple[np.ndarray, list[dict]]:
     parameters = each.model.numeric_parameters()
     p = np.array(list(parameters.values()))
     q, u = each.model.start_values()
-    nodes = (*system.symbols.q, *system.symbols.u)
+    nodes = system.symbols.x
     x0 = [(q | u)[node.name] for node in nodes]
     times = np.linspace(0.0, end, 7)
     run = solve_ivp(lambda t, x: rhs(t, x, p), (0.0, end), x0, method="DOP853", rtol=1e-11, atol=1e-11, t_eval=times)
@@ -421,7 +421,7 @@ def test_laws_of_motion_are_the_motion(name):
     each = phase(LAWS[name])
     laws = laws_of_motion(each.system, each.accelerations, exact_start(each))
     symbols = each.system.symbols
-    assert {*symbols.q, *symbols.u} <= laws.keys()
+    assert {*symbols.x} <= laws.keys()
     _, states = motion(each, 1.3)
     for state in states:
         fixed = {node: value for node, value in state.items() if node not in laws}

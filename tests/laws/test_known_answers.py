@@ -36,7 +36,7 @@ def derived(path):
 
 def names_of(symbols) -> dict:
     """Every symbol of a derivation by its name, for the evaluation of text."""
-    listed = (*symbols.q, *symbols.u, *symbols.a)
+    listed = (*symbols.x, *symbols.a)
     named = {symbol.name: symbol for symbol in listed}
     return named | symbols.parameters | symbols.inputs | {"t": symbols.t, "pi": symbols.graph.pi}
 

@@ -99,11 +99,13 @@ def test_the_emitted_code_gives_the_accelerations_of_the_symbols(name):
             break
         except NoValue:
             continue
-    x = [float(state[s]) for s in (*symbols.q, *symbols.u)]
+    x = [float(state[s]) for s in symbols.x]
     p = [float(state[s]) for s in symbols.parameters.values()]
     inputs = [float(state[s]) for s in symbols.inputs.values()]
     dx = equations.rhs("c")(float(state[symbols.t]), x, p, inputs)
-    assert dx[len(symbols.q) :] == pytest.approx(a, rel=1e-9, abs=1e-9 * (1 + max(map(abs, a), default=0)))
+    assert dx[len(symbols.q) :][: len(symbols.u)] == pytest.approx(
+        a, rel=1e-9, abs=1e-9 * (1 + max(map(abs, a), default=0))
+    )
 
 
 HANGING_MASS = """
@@ -132,7 +134,7 @@ def test_a_pin_holds_up_the_weight_of_a_hanging_mass():
     equations = loads(HANGING_MASS)
     graph = equations.graph
     state = {s: fifty_digits().number(2) for s in graph.symbols.parameters.values()}
-    state |= {s: fifty_digits().number(0) for s in (*graph.symbols.q, *graph.symbols.u)}
+    state |= {s: fifty_digits().number(0) for s in graph.symbols.x}
     assert np.array(exact_accelerations(graph, state), dtype=float) == pytest.approx([0.0])
     forcing = float(evaluate(graph.forcing, state, fifty_digits())[0])
     J = float(evaluate(graph.J[0], state, fifty_digits())[0])

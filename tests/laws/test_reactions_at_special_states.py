@@ -143,7 +143,7 @@ def test_reactions_as_code_are_those_of_the_balance_where_its_coefficients_vanis
     found = dict(zip(function.names, function(0.0, rhs.x0, rhs.p0), strict=True))
     symbols, balance = equations.graph.symbols, equations.reactions.balance
     du = rhs(0.0, rhs.x0, rhs.p0)[len(symbols.q) :]
-    places = (symbols.t, *symbols.q, *symbols.u, *symbols.a, *symbols.parameters.values())
+    places = (symbols.t, *symbols.x, *symbols.a, *symbols.parameters.values())
     state = dict(zip(places, (0.0, *rhs.x0, *du, *rhs.p0), strict=True))
     A = np.zeros((len(balance.equations), len(balance.components)))
     for row, equation in zip(A, balance.equations, strict=True):

@@ -42,7 +42,7 @@ def own_state_matrix(small: SmallMotions) -> np.ndarray:
     equations = eomgen.derive(small.reference.system.scope.model)
     graph, symbols = equations.graph, equations.graph.symbols
     named = {x.name: value for x, value in small.reference.numbers.items()}
-    x0 = [named[x.name] for x in (*symbols.q, *symbols.u)]
+    x0 = [named[x.name] for x in symbols.x]
     others = {x: named[x.name] for x in (symbols.t, *symbols.parameters.values(), *symbols.inputs.values())}
     n, k = len(symbols.u), len(graph.J)
     wanted = (
@@ -54,7 +54,7 @@ def own_state_matrix(small: SmallMotions) -> np.ndarray:
     )
 
     def f(x: list[Any]) -> list[Any]:
-        state = {**others, **dict(zip((*symbols.q, *symbols.u), x, strict=True))}
+        state = {**others, **dict(zip(symbols.x, x, strict=True))}
         flat = iter(evaluate(wanted, state, fifty_digits()))
         rates = [next(flat) for _ in symbols.q]
         M = [[next(flat) for _ in range(n)] for _ in range(n)]

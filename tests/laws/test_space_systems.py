@@ -492,7 +492,7 @@ def _at(q: np.ndarray, entries) -> np.ndarray:
     from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
     symbols = equations("puma560").graph.symbols
-    state = dict(zip((*symbols.q, *symbols.u), (*q, *np.zeros(6)), strict=True))
+    state = dict(zip(symbols.x, (*q, *np.zeros(6)), strict=True))
     state |= {node: parameters("puma560")[name] for name, node in symbols.parameters.items()}
     state |= dict.fromkeys(symbols.inputs.values(), 0.0)
     return np.array(evaluate(tuple(entries), state, FLOAT), dtype=float)

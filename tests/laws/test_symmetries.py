@@ -67,14 +67,14 @@ def accelerations(tables: Tables) -> dict[str, tuple[float, ...]]:
     numbers."""
     equations = eomgen.derive(eomgen.loads(text_of(tables)))
     rhs = equations.rhs("numpy")
-    names = (*equations.coordinates, *equations.speeds)
+    names = tuple(node.name for node in equations.system.symbols.x)
     rng = Random(3)
     moved = {name: rng.uniform(-0.1, 0.1) for name in sorted(names)}
     constrained = bool(equations.graph.J) or any(c.dependent for c in equations.model.coordinates.values())
     states = [np.asarray(rhs.x0)]
     if not constrained:
         states.append(states[0] + np.array([moved[name] for name in names]))
-    rows = [rhs(0.0, x, rhs.p0)[len(equations.coordinates) :] for x in states]
+    rows = [rhs(0.0, x, rhs.p0)[len(equations.coordinates) :][: len(equations.speeds)] for x in states]
     return dict(zip(equations.speeds, zip(*(map(float, row) for row in rows), strict=True), strict=True))
 
 

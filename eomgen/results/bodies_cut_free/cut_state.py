@@ -32,7 +32,7 @@ class CutState:
 
     Args:
         study: of the contacts as they are then.
-        drawn: t, q, u and the parameters in numbers; those without a value are 1.
+        drawn: t, q, u, z and the parameters in numbers; those without a value are 1.
         when: the instant in words.
         rests: nothing moves, and the balance alone gives all reactions.
     """
@@ -106,11 +106,11 @@ class CutState:
 
     @property
     def _accelerations(self) -> Iterable[float]:
-        count = len(self.system.symbols.u)
-        if not count:
+        symbols = self.system.symbols
+        if not symbols.u:
             return ()
         rates = self._right_hand_side(self.drawn.t, self.drawn.x, self.drawn.p)
-        return [float(x) for x in rates[len(rates) - count :]]
+        return [float(x) for x in rates[len(symbols.q) :][: len(symbols.u)]]
 
 
 def _numbers(scalars: Mapping[Any, Scalar], known: Mapping[Node, float]) -> dict[Any, float]:
