@@ -181,6 +181,13 @@ def check_command(
 @click.option("--section", metavar="NAME", help="Only this section: motion, positions, ...")
 @click.option("--fragment", is_flag=True, help="LaTeX to paste into a document of your own; it needs amsmath alone.")
 @click.option("--numbered", is_flag=True, help="Each formula of --fragment has a number.")
+@click.option(
+    "--impact",
+    metavar="[CONTACT]",
+    is_flag=False,
+    flag_value="",
+    help="The impact where CONTACT closes (A,B: both at once): impulses, speeds after it, loss.",
+)
 @click.option("--diff", metavar="OTHER", type=click.Path(exists=True, dir_okay=False), help="What differs from OTHER.")
 @click.option(
     "--fresh",
@@ -198,7 +205,13 @@ def derive_command(*, fresh: bool, **options: Any) -> int:
     form = form_requested(options["wants_json"], options["format_"], options["output"])
     in_latex = form == "latex", "is of --format latex"
     refuse_idle(units=of_one, full=of_one, section=of_one, fragment=in_latex)
-    if fresh or options["model"] == "-" or options["diff"] is not None or not options["certify"]:
+    if (
+        fresh
+        or options["model"] == "-"
+        or options["impact"] is not None
+        or options["diff"] is not None
+        or not options["certify"]
+    ):
         return write_requested(partial(_derived, data=form == "json"), **options)
     return _cached_derivation(**options)
 

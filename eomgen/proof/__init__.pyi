@@ -92,6 +92,9 @@ from eomgen.proof.emitted_code import start_state_tried as start_state_tried
 # A failing check where a number of the test vectors is missing in the self-test of a language; else none
 from eomgen.proof.emitted_code import unwritten as unwritten
 
+# Checks of impulses, speeds and loss of an impact
+from eomgen.proof.impacts import impact_checks as impact_checks
+
 # Message that names a body which differs from the file; "" where all that have the same name in both agree
 from eomgen.proof.imported import imported_otherwise as imported_otherwise
 

@@ -33,6 +33,9 @@ from eomgen.results.bodies_cut_free.result import free_bodies as free_bodies
 # The model's parts and its degrees of freedom, by rank and by the counting formula
 from eomgen.results.check import check_document as check_document
 
+# The impact where contacts close: its equations, impulses, the speeds after it, the loss of energy
+from eomgen.results.closing_contacts import impact as impact
+
 # Differences of the second of two models from the first, not proven yet
 from eomgen.results.difference import difference_document as difference_document
 

@@ -136,7 +136,7 @@ class WithoutContacts:
             found |= {name if k == 0 else f"{name} {rows[k].component}": float(x) for k, x in enumerate(values)}
         found |= {f"{name} t": x for name, x in after.friction.items()}
         closing = self.system.constraints.closing
-        several = [row.constraint for row in closing]
+        several = [row.constraint for row in self.system.constraints.rows]
         for row, x in zip(closing, after.held, strict=True):
             alone = several.count(row.constraint) == 1 or not row.component
             found[row.constraint if alone else f"{row.constraint} {row.component}"] = float(x)

@@ -10,6 +10,7 @@ from eomgen.equations import Equations
 from eomgen.model import Model
 from eomgen.proof import Certificate
 from eomgen.results import difference_document
+from eomgen.results import impact as impact_of
 
 HEADS = {"names": "name", "equations": "equation of motion along", "reactions": "reaction", "outputs": "output"}
 
@@ -27,6 +28,7 @@ def derive_document(
     fragment: bool = False,
     numbered: bool = False,
     language: str = "",
+    impact: str | None = None,
 ) -> Document:
     """The derivation, and its certificate.
 
@@ -36,12 +38,18 @@ def derive_document(
         diff: the file of another model: the differences from it are reported instead.
         data: the texts for machines are proven, too.
         language: of its words; "" for that of the model.
+        impact: contacts that close, with commas between; "": the one that can: their impact instead of the equations.
         section, fragment, numbered: of it only that section; as a part of another document.
     """
     if diff is not None:
         first, second = pipeline.derive(model, method), pipeline.derive(diff, method)
         document = difference_document(first.graph, second.graph)
         return proven(document, _both(first.certify(), second.certify()) if certify else None)
+    if impact is not None:
+        found = impact_of(model, [name.strip() for name in impact.split(",") if name.strip()], full=full)
+        document = fragment_of(found.derivation, section, fragment, numbered).said_in(language_of(model, language))
+        document = replace(document, entries=found.entries)
+        return proven(document, found.certify() if certify else None)
     equations = pipeline.derive(model, method)
     document = equations.written(full=full)
     document = _with_units(equations, document) if units else document

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from itertools import pairwise
 
 import numpy as np
 import pytest
+import sympy
 from scipy.optimize import nnls
 
 import eomgen
-from eomgen.errors import DerivationError, EomgenError, ModelError
+from eomgen.errors import DerivationError, EomgenError, ModelError, UsageError
 from eomgen.mechanics.impacts import Hit, ImpactLaw, jump
 from eomgen.mechanics.impacts.law import lemke, routh
 from eomgen.proof.contact_phases import stepped_impact
+from eomgen.results import impact
 from eomgen.simulation.result import Trajectory
+from eomgen.symbolic.expression import parse
 
 G = 9.81
 HEAD = """
@@ -392,6 +396,79 @@ def test_poissons_law_of_a_cradle_is_newtons():
     assert jump(np.eye(3), held, hits, u, ImpactLaw("poisson")).u == pytest.approx(jump(np.eye(3), held, hits, u).u)
 
 
+# -- the impact as equations -----------------------------------------------------------------------
+
+
+def derived(text: str, contacts: str = "") -> dict:
+    """The entry `impact` of derive --impact, whose certificate holds."""
+    found = impact(eomgen.loads(HEAD + text), [name for name in contacts.split(",") if name])
+    assert found.certify().ok
+    return found.entries()["impact"]
+
+
+def test_the_impact_of_a_dumbbell_in_formulas():
+    """Lam = -(1 + e) v/(1/2m + x^2/I), x = -(l/2) cos phi; the loss is (1 - e^2) v^2/2 over the same."""
+    found = derived(DUMBBELL)
+    m, l, e, phi, vx, vy, w = sympy.symbols("m l e phi vx vy w")
+    place = {"x'": "vx", "y'": "vy", "phi'": "w"}
+
+    def read(text: str) -> sympy.Expr:
+        text = functools.reduce(lambda s, name: s.replace(name, place[name]), place, text)
+        return sympy.sympify(text.replace("^", "**"), locals={x.name: x for x in (m, l, e, phi, vx, vy, w)})
+
+    x, inertia = -l * sympy.cos(phi) / 2, m * l**2 / 2
+    effective, v = 1 / (1 / (2 * m) + x**2 / inertia), vy + x * w
+    assert sympy.simplify(read(found["impulses"]["floor"]) + (1 + e) * v * effective) == 0
+    assert sympy.simplify(read(found["loss"]) - (1 - e**2) * v**2 * effective / 2) == 0
+    assert sympy.simplify(read(found["after"]["phi'"]) - (w - x * (1 + e) * v * effective / inertia)) == 0
+    assert found["unknowns"] == ["x_after'", "y_after'", "phi_after'", "Lambda_floor"]
+
+
+def test_the_impact_of_two_balls_at_once_and_of_one_of_them():
+    """floor alone: -(1 + e) m1 y1'; both: each impulse stops and returns what is above it."""
+    alone, both = derived(TWO_BALLS, "floor"), derived(TWO_BALLS, "floor,between")
+    assert alone["impulses"] == {"floor": "-m1*(1 + e)*y1'"} and alone["after"]["y2'"] == "y2'"
+    assert both["impulses"]["floor"] == "-(1 + e)*(m1*y1' + m2*y2')"
+    assert both["impulses"]["between"] == "-m2*(1 + e)*y2'"
+
+
+CRANK = """
+coordinates.a = { start = 0.5, speed = 5 }
+coordinates.b = { dependent = true, near = -0.2 }
+coordinates.s = { dependent = true, near = 1 }
+[parameters]
+m = 1
+r = 0.3
+l = 1
+e = 0.4
+g = 0
+[bodies.crank]
+shape = { kind = "rod", mass = "m", length = "r" }
+joint = { kind = "revolute", point = "start", angle = "a" }
+[bodies.rod]
+shape = { kind = "rod", mass = "m", length = "l" }
+joint = { kind = "revolute", on = "crank.end", point = "start", angle = "b" }
+[bodies.piston]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "prismatic", axis = [1, 0], displacement = "s", limits = [0.9, "inf"], restitution = "e" }
+[constraints.pin]
+kind = "pin"
+points = ["rod.end", "piston.origin"]
+"""
+
+
+@pytest.mark.slow
+def test_the_impact_of_a_closed_chain_is_that_of_its_run():
+    """a' -> -e a'; the formula of the impulse at the state of the run's impact gives its number."""
+    found, result = derived(CRANK), run(CRANK, 0.5)
+    hit, last = result.impacts[0], result.phases[0].last
+    values = {"m": 1, "r": 0.3, "l": 1, "e": 0.4, "a": last["a"], "b": last["b"]}
+    formula = parse(found["impulses"]["piston_low"].replace("a'", "v"))
+    assert formula.value_at({**values, "v": last["a'"]}) == pytest.approx(hit.impulses["piston_low"], rel=1e-6)
+    loss = parse(found["loss"].replace("a'", "v"))
+    assert loss.value_at({**values, "v": last["a'"]}) == pytest.approx(hit.loss, rel=1e-6)
+
+
 # -- what is refused -------------------------------------------------------------------------------
 
 
@@ -417,3 +494,12 @@ def test_friction_at_several_contacts_at_once_and_in_space_is_refused():
     both = [other, Hit("c", rough.rows, 0.5)]
     with pytest.raises(DerivationError, match="the energetic law is one of single contacts"):
         jump(np.eye(2), np.zeros((0, 3)), both, np.array([-1.0, -1]), ImpactLaw("energetic"))
+
+
+def test_an_impact_is_asked_of_a_contact_that_can_close():
+    with pytest.raises(UsageError, match="several contacts can close: floor, between"):
+        derived(TWO_BALLS)
+    with pytest.raises(UsageError, match="'wall' is no contact that can close"):
+        derived(TWO_BALLS, "wall")
+    with pytest.raises(DerivationError, match="friction has a part in the impact of 'floor'"):
+        derived(DUMBBELL.replace('restitution = "e"', 'restitution = "e"\nfriction = 0.3'))

@@ -1,5 +1,11 @@
 """Door of the folder: what other folders may import from `eomgen.mechanics.impacts`."""
 
+# The jump where contacts close as equations, with its impulses, speeds and loss
+from eomgen.mechanics.impacts.equations import ImpactEquations as ImpactEquations
+
+# The equations of the impact in which contacts close
+from eomgen.mechanics.impacts.equations import impact_equations as impact_equations
+
 # One contact that touches in an impact: its rows, its restitution
 from eomgen.mechanics.impacts.law import Hit as Hit
 

@@ -1,0 +1,223 @@
+"""Model, contacts that close -> ImpactEquations: the jump of the speeds as equations, solved for impulses and speeds.
+
+    M (u+ - u-) = J^T Lam,   J u+ + sigma = - e (J u- + sigma) of what closes,   J u+ + sigma = 0 of what holds
+
+Contacts that close push: Lam > 0 says that the others are right to hold. The kinetic energy lost, where nothing is
+given a speed:  T- - T+ = - sum Lam (v+ + v-)/2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+
+from eomgen.errors import DerivationError, UsageError
+from eomgen.frozen import dataclass
+from eomgen.mechanics.constraints import Rank, Row, holds_identically, rows_of_constraint
+from eomgen.mechanics.dynamics import System, assembled_by_recursion, system_of
+from eomgen.mechanics.kinematics import ContactMode, SystemInertia
+from eomgen.model import Contact, Model
+from eomgen.symbolic.exact import book_form, cramer
+from eomgen.symbolic.expression import Node, Scalar, ScalarRow, inner, is_zero, jacobian, over, substituted
+from eomgen.symbolic.numeric import Work
+
+OPEN = ContactMode(closed=False)
+
+
+@dataclass(frozen=True)
+class ImpactRow:
+    """One scalar row that takes part in an impact.
+
+    Args:
+        name: of its impulse: floor, or of a constraint with more rows "A x".
+        e: its restitution; None: it holds.
+        J, sigma: its velocity J u + sigma.
+        impulse: the symbol of its impulse [N s, of couples N m s].
+        row: from which it was made.
+    """
+
+    name: str
+    e: Scalar | None
+    J: ScalarRow
+    sigma: Scalar
+    impulse: Node
+    row: Row
+
+    @property
+    def unit(self) -> str:
+        """N s, of a couple alone N m s; of a row of coordinates that of its generalized impulse."""
+        if not self.row.wrenches:
+            return ""
+        return "N*s" if any(not is_zero(x) for _, wrench in self.row.wrenches for x in wrench.f) else "N*m*s"
+
+
+@dataclass(frozen=True)
+class ImpactEquations:
+    """The jump where contacts close, at any state.
+
+    Args:
+        system: with every contact that can end open; u are the speeds before.
+        contacts: what closes.
+        rows: of these, of contacts that stay closed, and of the constraints.
+        after: the speeds after it, as symbols.
+    """
+
+    system: System
+    contacts: tuple[str, ...]
+    rows: tuple[ImpactRow, ...]
+    after: tuple[Node, ...]
+
+    @cached_property
+    def M(self) -> tuple[ScalarRow, ...]:
+        return tuple(tuple(row) for row in assembled_by_recursion(self.system).M)
+
+    @property
+    def u(self) -> tuple[Node, ...]:
+        return self.system.symbols.u
+
+    @cached_property
+    def balances(self) -> tuple[tuple[Scalar, Scalar], ...]:
+        """(left, right) of M (u+ - u-) = J^T Lam, one for each speed."""
+        changes = [later - before for later, before in zip(self.after, self.u, strict=True)]
+        left = [inner(row, changes) for row in self.M]
+        impulses = [row.impulse for row in self.rows]
+        right = [inner([row.J[k] for row in self.rows], impulses) for k in range(len(self.u))]
+        return tuple(zip(left, right, strict=True))
+
+    @cached_property
+    def conditions(self) -> tuple[tuple[Scalar, Scalar], ...]:
+        """(left, right) of v+ = - e v-, of what holds v+ = 0, one for each row."""
+        found = []
+        for row in self.rows:
+            before, later = (inner(row.J, speeds) + row.sigma for speeds in (self.u, self.after))
+            found.append((later, 0 if row.e is None else -row.e * before))
+        return tuple(found)
+
+    @cached_property
+    def solution(self) -> dict[Node, Scalar]:
+        """Speeds after it and impulses.
+
+        Raises:
+            DerivationError: too many unknowns hang together.
+        """
+        n = len(self.u)
+        rows: list[dict[int, Scalar]] = [_entries(row) for row in self.M]
+        right: list[Scalar] = [0] * n
+        for m, row in enumerate(self.rows):
+            for k, x in enumerate(row.J):
+                if not is_zero(x):
+                    rows[k][n + m] = -x
+            before = inner(row.J, self.u) + row.sigma
+            rows.append(_entries(row.J))
+            right.append(-before if row.e is None else -(1 + row.e) * before)
+        values = [x for (x,) in cramer.solution_by_minors(rows, [(x,) for x in right])[0]]
+        short = [book_form(x, Work.ANSWER) for x in values]
+        later = [u + change for u, change in zip(self.u, short, strict=False)]
+        unknowns = (*self.after, *(row.impulse for row in self.rows))
+        return dict(zip(unknowns, (*(book_form(x, Work.ANSWER) for x in later), *short[n:]), strict=True))
+
+    @property
+    def impulses(self) -> dict[str, Scalar]:
+        """The impulse of each row, by name."""
+        return {row.name: self.solution[row.impulse] for row in self.rows}
+
+    @cached_property
+    def loss(self) -> Scalar:
+        """Kinetic energy that is lost: T before less T after."""
+        if any(not is_zero(row.sigma) for row in self.rows) or self._is_driven:
+            T = SystemInertia(self.system.motion).kinetic_energy
+            later = substituted((T,), {u: self.solution[x] for u, x in zip(self.u, self.after, strict=True)})[0]
+            return book_form(T - later, Work.ANSWER)
+        lost: Scalar = 0
+        for row in self.rows:
+            if row.e is not None:  # v+ + v- = (1 - e) v-
+                lost = lost - self.solution[row.impulse] * (1 - row.e) * inner(row.J, self.u)
+        return book_form(over(lost, 2), Work.ANSWER)
+
+    @property
+    def _is_driven(self) -> bool:
+        return bool(self.system.scope.model.driven_coordinates)
+
+
+def _entries(row: ScalarRow) -> dict[int, Scalar]:
+    return {k: x for k, x in enumerate(row) if not is_zero(x)}
+
+
+def impact_equations(model: Model, contacts: Sequence[str] = (), closed: Sequence[str] = ()) -> ImpactEquations:
+    """The equations of the impact in which contacts close.
+
+    Args:
+        contacts: what closes; (): the one contact that can end.
+        closed: contacts that are closed already, and stay so.
+    Raises:
+        UsageError: no such contact, or none is named and there are several.
+        DerivationError: the coordinates cannot leave a contact, or friction has a part in the impact.
+    """
+    ending = {contact.name: contact for contact in model.contacts if contact.unilateral}
+    names = _named(ending, contacts)
+    for name in names:
+        _refuse_friction(model, ending[name])
+    if len(names) > 1 and model.impact is not None and model.impact.order == "sequential":
+        what = "contacts that are hit one after the other have no one set of equations"
+        raise DerivationError(what, "impact", f"name one: --impact {names[0]}")
+    system = system_of(model, dict.fromkeys(ending, OPEN))
+    staying = [name for name in closed if name in ending and name not in names]
+    own = {name: rows_of_constraint(system.motion, name) for name in (*names, *staying)}
+    symbol = system.symbols.u[0].graph.symbol
+    found = []
+    for name, rows in own.items():
+        for k, row in enumerate(rows):
+            e = system.scope.value(ending[name].restitution) if ending[name].restitution is not None else 0
+            label = name if k == 0 else f"{name} {row.component}"
+            found.append(_row(system, row, label, e if name in names and k == 0 else None))
+    redundant = {(row.constraint, row.number) for row in Rank(system.constraints).redundant()}
+    several = [row.constraint for row in system.constraints.rows]
+    for row in system.constraints.closing:
+        if (row.constraint, row.number) not in redundant:
+            alone = several.count(row.constraint) == 1 or not row.component
+            found.append(_row(system, row, row.constraint if alone else f"{row.constraint} {row.component}", None))
+    after = tuple(symbol(_after(u.name)) for u in system.symbols.u)
+    return ImpactEquations(system, names, tuple(found), after)
+
+
+def _named(ending: Mapping[str, Contact], contacts: Sequence[str]) -> tuple[str, ...]:
+    if not ending:
+        raise UsageError(
+            "no contact of the model can close", fix="unilateral = true of a constraint, or limits of a joint"
+        )
+    for name in contacts:
+        if name not in ending:
+            raise UsageError(f"'{name}' is no contact that can close", fix=f"one of {', '.join(ending)}")
+    if not contacts and len(ending) > 1:
+        what = f"several contacts can close: {', '.join(ending)}"
+        raise UsageError(what, fix=f"name those that do: --impact {next(iter(ending))}")
+    return tuple(contacts) or tuple(ending)
+
+
+def _refuse_friction(model: Model, contact: Contact) -> None:
+    if contact.mu is not None and (contact.restitution is not None or model.impact is not None):
+        raise DerivationError(
+            f"friction has a part in the impact of '{contact.name}': whether it slides, sticks or slides back decides "
+            "its equations",
+            contact.declared_at,
+            "`simulate` follows it; without `friction`, or without `restitution` and [impact], it has none",
+        )
+
+
+def _row(system: System, row: Row, name: str, e: Scalar | None) -> ImpactRow:
+    u = system.symbols.u
+    (J,) = jacobian((row.velocity,), u)
+    (sigma,) = substituted((row.velocity,), dict.fromkeys(u, 0))
+    if all(holds_identically(x) for x in J):
+        raise DerivationError(
+            f"the coordinates satisfy '{row.constraint}' by themselves, and its impulse does not follow",
+            f"constraints.{row.constraint}",
+            "place the body by coordinates that can leave the contact",
+        )
+    return ImpactRow(name, e, tuple(J), sigma, u[0].graph.symbol(f"Lambda_{name.replace(' ', '_')}"), row)
+
+
+def _after(name: str) -> str:
+    """y_after' for y'."""
+    primes = len(name) - len(name.rstrip("'"))
+    return f"{name.rstrip(chr(39))}_after{chr(39) * primes}"

@@ -1,0 +1,139 @@
+"""Model -> ImpactResult: the impact where a contact closes, as equations, solved, with the energy that it takes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from eomgen.documents import (
+    Document,
+    Formula,
+    Grid,
+    Law,
+    Reader,
+    Result,
+    Statement,
+    Step,
+    document_of,
+    page,
+    prose,
+)
+from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
+from eomgen.mechanics.impacts import ImpactEquations, impact_equations
+from eomgen.mechanics.statics import ContactsAtStart
+from eomgen.model import Model
+from eomgen.proof import Certificate, impact_checks
+from eomgen.resources import doing
+from eomgen.symbolic.print import to_text
+
+LOSS = Law("T_before - T_after", r"T^{-} - T^{+}")
+
+
+@dataclass(frozen=True)
+class ImpactResult(Result):
+    """The impact where contacts of a model close.
+
+    Args:
+        model: whose.
+        equations: its jump.
+        full: everything is printed, however long.
+    """
+
+    model: Model
+    equations: ImpactEquations
+    full: bool = False
+
+    def __repr__(self) -> str:
+        return f"<impact of {', '.join(self.equations.contacts)} in {self.model.name!r}>"
+
+    @property
+    def derivation(self) -> Document:
+        """Document with the equations of the impact, and their solution."""
+        return document_of(self.model, "impact", (self._equations_step, self._solution_step))
+
+    @property
+    def _reader(self) -> Reader:
+        return Reader(full=self.full, positive=self.equations.system.scope.positive)
+
+    @property
+    def _equations_step(self) -> Step:
+        found = self.equations
+        reader = self._reader
+        closing = ", ".join(found.contacts)
+        held = [row.name for row in found.rows if row.e is None]
+        statements: list[Statement] = [
+            prose(f"Closing: {closing}."),
+            prose("Positions stay, and impulses change the speeds from those before to those after the impact:"),
+            *(Formula((reader.shown(left), reader.shown(right))) for left, right in found.balances),
+            prose("What closes leaves with e times the speed of its approach:"),
+            *(Formula((reader.shown(a), reader.shown(b))) for a, b in self._conditions(closes=True)),
+        ]
+        if held:
+            statements += [
+                prose("What holds stays at rest:"),
+                *(Formula((reader.shown(a), reader.shown(b))) for a, b in self._conditions(closes=False)),
+            ]
+        named = [(row.impulse, f"impulse of {row.name}", row.unit) for row in found.rows]
+        later = [(x, f"{u.name} after the impact", "") for u, x in zip(found.u, found.after, strict=True)]
+        table = Grid(("symbol", "meaning", "unit"), (*named, *later))
+        return Step("impact", "Impact", (*statements, table))
+
+    def _conditions(self, *, closes: bool) -> list[tuple[Any, Any]]:
+        pairs = zip(self.equations.rows, self.equations.conditions, strict=True)
+        return [condition for row, condition in pairs if (row.e is not None) == closes]
+
+    @property
+    def _solution_step(self) -> Step:
+        found, reader = self.equations, self._reader
+        impulses = [(row.impulse, found.solution[row.impulse]) for row in found.rows]
+        statements = (
+            prose("The impulses, which must push or pull as their contacts can:"),
+            *page(reader, impulses),
+            prose("The speeds after the impact:"),
+            *page(reader, [(x, found.solution[x]) for x in found.after]),
+            prose("The kinetic energy that is lost:"),
+            *page(reader, [(LOSS, found.loss)]),
+        )
+        return Step("impulses", "Impulses, speeds and loss", statements)
+
+    def certify(self) -> Certificate:
+        """Check momenta of the bodies, restitution, energies, and the law in numbers."""
+        return Certificate(tuple(impact_checks(self.equations)))
+
+    def entries(self) -> dict[str, Any]:
+        """Entries of the JSON document."""
+        found = self.equations
+        equations = [f"{to_text(a)} = {to_text(b)}" for a, b in (*found.balances, *found.conditions)]
+        return {
+            "name": self.model.name,
+            "impact": {
+                "contacts": list(found.contacts),
+                "equations": equations,
+                "unknowns": [x.name for x in found.solution],
+                "impulses": {name: to_text(x) for name, x in found.impulses.items()},
+                "after": {u.name: to_text(found.solution[x]) for u, x in zip(found.u, found.after, strict=True)},
+                "loss": to_text(found.loss),
+            },
+        }
+
+
+@doing("the equations of the impact")
+def impact(model: Model, contacts: Sequence[str] = (), *, full: bool = False) -> ImpactResult:
+    """The impact where contacts close: its equations, impulses, the speeds after it, the loss of energy.
+
+    Contacts that are closed at the start stay so.
+
+    Args:
+        contacts: by name; (): the one that can end.
+        full: everything is printed, however long.
+    Raises:
+        UsageError, DerivationError: as of `impact_equations`.
+    """
+    modes = ContactsAtStart.of(model).modes
+    ending = [contact.name for contact in model.contacts if contact.unilateral]
+    closed = [name for name in ending if name not in modes or modes[name].closed] if len(ending) > 1 else []
+    found = impact_equations(model, contacts, closed)
+    if not found.u:
+        raise DerivationError("nothing of the model can move", fix="give it a coordinate")
+    return ImpactResult(model, found, full)
