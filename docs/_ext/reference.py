@@ -46,8 +46,10 @@ from eomgen.model.joints.base import Turned  # noqa: E402
 from eomgen.model.joints.path import PathPiece  # noqa: E402
 from eomgen.model.kinds import (  # noqa: E402
     LimitsRule,
+    PushFriction,
     ReactionSymbolsRule,
     Resistance,
+    TurnFriction,
 )
 from eomgen.model.model import Model  # noqa: E402
 from eomgen.model.part import PartRule, SeamRule, Slot, meanings  # noqa: E402
@@ -93,6 +95,8 @@ TABLES: Mapping[str, type[Any]] = {
     "bodies": Body,
     "pieces": Piece,
     "friction": Resistance,
+    "friction of a turn": TurnFriction,
+    "friction of a slide": PushFriction,
     "track": Track,
     "circle": Circle,
     "wrap": Wrap,

@@ -212,7 +212,17 @@ def _ways(system: System) -> tuple[Reactions, ...]:
 # Balance -> a symbol and its meaning for every reaction: B_x, R_stick_x, N_wall, F_floor, T_rope, M_E.
 
 
-LETTERS = {"n": "N", "t": "F", "s": "S", "tension": "T", "couple": "M", "drive": "D", "wrench": "W", "": "L"}
+LETTERS = {
+    "n": "N",
+    "t": "F",
+    "s": "S",
+    "tension": "T",
+    "couple": "M",
+    "drive": "D",
+    "friction": "F",
+    "wrench": "W",
+    "": "L",
+}
 """label -> the letter of a symbol whose owner stands behind it."""
 
 AXES = ("x", "y", "z")
@@ -419,6 +429,8 @@ def meaning(balance: Balance, component: Component) -> str:
         return _friction(balance, component, kind) + (
             ", without sliding" if component.bilateral_friction is None else ""
         )
+    if kind == "friction":
+        return f"friction {on}"
     if kind == "n":
         return f"normal force {on}{_direction(balance, component)}"
     return f"wrench {on}" if kind == "wrench" else f"reaction {on}"
@@ -431,6 +443,8 @@ def said(balance: Balance, named: NamedReaction) -> str:
     of_one = [j for j, k in named.combination.items() if type(k) is int and k == 1]
     if axis not in AXES and of_one and not balance.components[of_one[0]].is_wrench:
         return meaning(balance, balance.components[of_one[0]])
+    if kind == "friction":
+        return f"friction in the joint {named.owner}"
     place = rest.removesuffix(")")
     side = place.partition(".")[2]
     mine = [c for c in balance.components if c.owner == named.owner and c.kind != "drive"]

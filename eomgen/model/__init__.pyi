@@ -63,7 +63,7 @@ from eomgen.model.constraints.strand import Strand as Strand
 # The strand that touches both
 from eomgen.model.constraints.strand import common_tangent as common_tangent
 
-# A constraint, or the joint of a body on a path
+# A constraint, the joint of a body on a path, or a joint with dry friction
 from eomgen.model.contacts import Contact as Contact
 
 # "did you mean 'forearm'?", or "" where nothing is near
@@ -178,6 +178,9 @@ from eomgen.model.joints.base import oriented as oriented
 
 # The axis over its length, exactly
 from eomgen.model.joints.base import unit as unit
+
+# Dry friction along a variable of a joint
+from eomgen.model.kinds import JointFriction as JointFriction
 
 # Symbols of the reactions of a joint or a constraint
 from eomgen.model.kinds import ReactionSymbols as ReactionSymbols

@@ -97,6 +97,13 @@ class Catalog:
         trusses = self.table("trusses").items()
         return tuple(f"{name}.{node}" for name, truss in trusses if truss for node in truss.nodes or {})
 
+    @property
+    def joints_with_friction(self) -> dict[str, bool]:
+        """{joint: True of a torque, False of a force} of all dry friction in joints."""
+        joints = ((name, body.joint) for name, body in self.table("bodies").items() if body is not None and body.joint)
+        found = ((body, joint, each) for body, joint in joints for each in joint.frictions)
+        return {joint.named_contact(body, field): law.amount == "torque" for body, joint, (_, field, law) in found}
+
 
 def diagnostics_of_one(catalog: Catalog, path: DocumentPath, part: Any, keys: tuple[str, ...]) -> Iterator[Diagnostic]:
     """Diagnostics unless exactly one of these fields is given."""

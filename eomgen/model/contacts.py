@@ -7,19 +7,20 @@ from collections.abc import Iterator
 from eomgen.frozen import dataclass
 from eomgen.model.constraints import Constraint
 from eomgen.model.fields import Table
-from eomgen.model.kinds import Resistance
+from eomgen.model.kinds import JointFriction, Resistance
 from eomgen.model.parts import Body, Coordinate
 from eomgen.symbolic.expression import Expression
 
 
 @dataclass(frozen=True)
 class Contact:
-    """A constraint, or the joint of a body on a path.
+    """A constraint, the joint of a body on a path, or a joint with dry friction.
 
     Args:
-        name: of the constraint, or of the body.
-        kind: as the model file says it: "support", "link", "path".
-        of_joint: the contact of a body with its path.
+        name: of the constraint, or of the body, of a joint of several variables arm_angle.
+        kind: as the model file says it: "support", "link", "path", "revolute".
+        of_joint: the contact of a body with its path, or its joint with friction.
+        body, variable: of a joint the body, and the number of the variable along which its friction acts.
         pulls: a wire or string, which goes slack; anything else opens.
         unilateral: it can end.
         friction: its law, or None.
@@ -31,8 +32,10 @@ class Contact:
     name: str
     kind: str
     unilateral: bool
-    friction: Resistance | None
+    friction: Resistance | JointFriction | None
     of_joint: bool = False
+    body: str = ""
+    variable: int = 0
     pulls: bool = False
     surface: bool = False
     round: bool = False
@@ -40,17 +43,39 @@ class Contact:
 
     @property
     def words(self) -> str:
+        if isinstance(self.friction, JointFriction):
+            return f"the joint '{self.name}'"
         return f"the body '{self.name}'" if self.of_joint else f"the {self.kind} '{self.name}'"
 
     @property
     def declared_at(self) -> str:
         """Path of its declaration: constraints.wall, bodies.bead.joint."""
-        return f"bodies.{self.name}.joint" if self.of_joint else f"constraints.{self.name}"
+        return f"bodies.{self.body}.joint" if self.of_joint else f"constraints.{self.name}"
 
     @property
     def mu(self) -> Expression | None:
-        """The coefficient of Coulomb friction."""
+        """The coefficient of Coulomb friction: the friction of a unit of the normal force, of a hinge mu r."""
         return None if self.friction is None else self.friction.coulomb
+
+    @property
+    def size(self) -> Expression | None:
+        """The dry friction that does not depend on a force: a torque or force of a joint."""
+        return self.friction.size if isinstance(self.friction, JointFriction) else None
+
+    @property
+    def grip(self) -> Expression | None:
+        """The largest friction at rest, of `mu` for a unit of the normal force."""
+        return self.friction.grip if isinstance(self.friction, JointFriction) else self.mu
+
+    @property
+    def dry(self) -> bool:
+        """True if it can stick."""
+        return self.mu is not None or self.size is not None
+
+    @property
+    def holds_both_ways(self) -> bool:
+        """True if its normal force, on which its friction depends, can have either sign."""
+        return self.friction is not None and self.size is None and not (self.unilateral or self.round)
 
 
 class Connections:
@@ -63,17 +88,31 @@ class Connections:
 
     @property
     def contacts(self) -> tuple[Contact, ...]:
-        """Every constraint that can end or has friction, and every body with friction on its path."""
+        """Every constraint that can end or has friction, bodies with friction on their paths, joints that can stick."""
         laws = ((name, getattr(body.joint, "friction", None)) for name, body in self.bodies.items())
-        return (*self._touching(), *(self._on_path(name, law) for name, law in laws if law is not None))
+        on_paths = (self._on_path(name, law) for name, law in laws if isinstance(law, Resistance))
+        return (*self._touching(), *on_paths, *self._in_joints())
 
     @property
     def rough_contacts(self) -> tuple[Contact, ...]:
-        """Every constraint with dry friction, and every body on a path of which a piece has it."""
+        """Every constraint and joint with dry friction, and every body on a path of which a piece has it."""
         pieces = (
             self._on_path(name, piece.friction) for name, body in self.bodies.items() for piece in body.path_pieces
         )
-        return tuple(contact for contact in (*self._touching(), *pieces) if contact.mu is not None)
+        return tuple(contact for contact in (*self._touching(), *pieces, *self._in_joints()) if contact.dry)
+
+    def _in_joints(self) -> Iterator[Contact]:
+        """Joints with dry friction that can stick: smooth friction never holds, and what is driven moves as given."""
+        given = self.driven_coordinates
+        for body, part in self.bodies.items():
+            joint = part.joint
+            if joint is None:
+                continue
+            for k, field, law in joint.frictions:
+                free = getattr(joint, field).names & self.coordinates.keys() - given
+                if law.smooth is None and free:
+                    name = joint.named_contact(body, field)
+                    yield Contact(name, joint.kind, False, law, of_joint=True, body=body, variable=k)
 
     def _touching(self) -> Iterator[Contact]:
         for name, constraint in self.constraints.items():
@@ -92,7 +131,7 @@ class Connections:
                 )
 
     def _on_path(self, body: str, law: Resistance | None) -> Contact:
-        return Contact(body, "path", False, law, of_joint=True, round=self.space == "space")
+        return Contact(body, "path", False, law, of_joint=True, body=body, round=self.space == "space")
 
     @property
     def driving_constraints(self) -> dict[str, tuple[str, ...]]:

@@ -12,7 +12,7 @@ from eomgen.model.diagnostics import Diagnostic, whereabouts
 from eomgen.model.fields import Leaf, WrittenEquation, named
 from eomgen.model.inference import NUMBER, SECOND, TIME, Clash, Dimension, Inference, Walk, dimension_of_unit
 from eomgen.model.outputs import FUNCTIONS
-from eomgen.model.outputs.base import formula_at
+from eomgen.model.outputs.base import DRY_JOINT, formula_at
 from eomgen.model.quantities import Unit
 from eomgen.symbolic.expression import Call, Expression, Reference
 
@@ -55,6 +55,7 @@ class Names:
         turns = (getattr(body.joint, "omega", None) for body in catalog.table("bodies").values() if body is not None)
         self._known |= {name: SECOND.raised(-1) for names in turns for name in names or ()}
         self._known |= {"t": SECOND, "pi": NUMBER}
+        self.frictions = {name: "N*m" if turns else "N" for name, turns in catalog.joints_with_friction.items()}
         self.moves = frozenset((*catalog.table("coordinates"), *catalog.table("states")))
         self.parameters = frozenset(catalog.table("parameters").keys() & self.declared)
 
@@ -75,6 +76,8 @@ class Names:
         found = dimension_of_unit(function.dimension)
         for k in function.per:
             argument, kind = call.args[k], function.kinds[k]
+            if kind == DRY_JOINT and isinstance(argument, Reference):
+                return _dimension(self.frictions[argument.name]) if argument.name in self.frictions else None
             if kind not in PER_NAME or not isinstance(argument, Reference):
                 return None
             rate = kind == "coordinate or speed" and argument.name in self.moves

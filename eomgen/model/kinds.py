@@ -195,6 +195,109 @@ class Resistance(Part):
 FrictionLaw = Annotated[Resistance, PartRule(Resistance)]
 
 
+# -------- friction of joints ----------------------------------------------------------------------------------
+# Dry friction along a joint's variable: of a constant size, or of the joint's own reaction force R.
+
+
+TorqueSize = Annotated[Expression, FormulaRule("N*m", "nonnegative")]
+ForceSize = Annotated[Expression, FormulaRule("N", "nonnegative")]
+TurningSpeed = Annotated[Expression, FormulaRule("rad/s", "positive")]
+SlidingSpeed = Annotated[Expression, FormulaRule("m/s", "positive")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointFriction(Part):
+    """Dry friction along a variable of a joint.
+
+    While it moves, - T sign(s'), or - mu |R| sign(s'), times r in a hinge; at rest what holds it, up to the same with
+    `static`. Smooth: - T tanh(s'/v), which never rests.
+    """
+
+    title: ClassVar[str] = "friction"
+    amount: ClassVar[str]  # the field of a constant size
+    static: Formula | None = None
+    smooth: Formula | None = None
+
+    @property
+    def size(self) -> Expression | None:
+        """The constant torque or force while it moves; None where it depends on the load."""
+        found: Expression | None = getattr(self, self.amount)
+        return found
+
+    @property
+    def coulomb(self) -> Expression | None:
+        """The friction of a unit of the joint's force, of a hinge mu r; None where its size is constant."""
+        return self._of_load(self._coefficient)
+
+    @property
+    def grip(self) -> Expression | None:
+        """The largest friction at rest: all of it, or that of a unit of the joint's force."""
+        if self.static is None:
+            return self.size if self._coefficient is None else self.coulomb
+        return self.static if self._coefficient is None else self._of_load(self.static)
+
+    @property
+    def _coefficient(self) -> Expression | None:
+        return getattr(self, "coefficient", None)
+
+    def _of_load(self, mu: Expression | None) -> Expression | None:
+        radius: Expression | None = getattr(self, "radius", None)
+        return mu if mu is None or radius is None else mu * radius
+
+    def diagnostics(self, path: DocumentPath) -> Iterator[Diagnostic]:
+        """Diagnostics of sizes that exclude one another, or of which one is missing."""
+        fields = [slot.name for slot in self.slots()]
+        ways = [name for name in (self.amount, "coefficient") if name in fields]
+        given = [name for name in ways if getattr(self, name) is not None]
+        if len(given) != 1:
+            what = f"the friction of the joint of '{path[1]}' needs {'one of ' * (len(ways) > 1)}"
+            yield Diagnostic(path, what + " and ".join(map(repr, ways)), "its size while it moves")
+        if "radius" in fields and (self._coefficient is None) != (getattr(self, "radius", None) is None):
+            what = f"'coefficient' and 'radius' of the friction of the joint of '{path[1]}' go together"
+            yield Diagnostic(path, what, "coefficient = 0.1, radius = 0.01: the friction torque is mu r |R|")
+        if self.smooth is not None and self.static is not None:
+            what = "smooth friction has no 'static': it never rests"
+            yield Diagnostic((*path, "static"), what, "leave out one of the two", key=True)
+        least, most = (
+            None if x is None else x.literal for x in (getattr(self, given[0]) if given else None, self.static)
+        )
+        if least is not None and most is not None and most < least:
+            what = f"'static' is {most}, below {least} while it moves"
+            yield Diagnostic((*path, "static"), what, f"at least {least}, or leave it out", key=True)
+
+
+@dataclass(frozen=True, kw_only=True)
+class TurnFriction(JointFriction):
+    """Dry friction of constant torque against a turn.
+
+    Args:
+        torque: T while it turns [N m].
+        static: the largest torque at rest (None: T) [N m].
+        smooth: v of - T tanh(s'/v), at which tanh reaches 76 %; None: it sticks and slips [rad/s].
+    """
+
+    amount: ClassVar[str] = "torque"
+    torque: TorqueSize | None = None
+    static: TorqueSize | None = None
+    smooth: TurningSpeed | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class PushFriction(JointFriction):
+    """Dry friction of constant force against a slide.
+
+    Args:
+        force: F while it slides [N].
+        static: the largest force at rest (None: F) [N].
+        smooth: v of - F tanh(s'/v), at which tanh reaches 76 %; None: it sticks and slips [m/s].
+    """
+
+    amount: ClassVar[str] = "force"
+    force: ForceSize | None = None
+    static: ForceSize | None = None
+    smooth: SlidingSpeed | None = None
+
+
 # -------- limits ----------------------------------------------------------------------------------------------
 # Limits of a joint's variables: rigid stops, each a constraint that can only push.
 

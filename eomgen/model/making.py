@@ -14,7 +14,7 @@ from eomgen.model.diagnostics import Diagnostic, nearest, whereabouts
 from eomgen.model.dimensions import dimensions
 from eomgen.model.fields import Leaf, NameRule, Table, WrittenEquation, in_si
 from eomgen.model.outputs import FUNCTIONS
-from eomgen.model.outputs.base import AXES, SIDES
+from eomgen.model.outputs.base import AXES, DRY_JOINT, SIDES
 from eomgen.model.part import Part, read_part
 from eomgen.model.positions import DocumentPath
 from eomgen.model.typed import Typing, typing_of
@@ -117,6 +117,8 @@ def _known(catalog: Catalog, kind: str) -> list[str]:
     if between is not None:
         forces = catalog.table("forces").items()
         return [name for name, part in forces if part and part.element and getattr(part.element, between)]
+    if kind == DRY_JOINT:
+        return list(catalog.joints_with_friction)
     tables = {
         "body": ("bodies",),
         "body or force": ("bodies", "forces"),

@@ -10,6 +10,7 @@ from eomgen.model.dimensions import Names, inferred
 from eomgen.model.fields import Table
 from eomgen.model.inference import Dimension, dimension_of_unit
 from eomgen.model.outputs import FUNCTIONS
+from eomgen.model.outputs.base import DRY_JOINT
 from eomgen.model.parts import Coordinate, Output, StateVariable
 from eomgen.model.quantities import Unit
 from eomgen.symbolic.expression import Fraction, parse
@@ -96,6 +97,8 @@ def _of_answer(known: Names, part: Output) -> Unit | None:
     function = FUNCTIONS.get(calls[0].name) if len(part.value.code) == len(calls) == 1 else None
     if function is not None and not function.per and function.like is None:
         return Unit.parse(function.unit)
+    if function is not None and function.kinds[:1] == (DRY_JOINT,):
+        return _unit(known, part.value.text)
     return _in_si(known.inference.reduced(known.walk().of(part.value)))
 
 
@@ -107,6 +110,8 @@ def _unit(known: Names, name: str) -> Unit | None:
     call = parse(name, references=True).call
     if call is not None and call.name in FUNCTIONS and not FUNCTIONS[call.name].per:
         return Unit.parse(FUNCTIONS[call.name].unit)
+    if call is not None and call.name == "friction" and (unit := known.frictions.get(str(call.args[0]))):
+        return Unit.parse(unit)
     declared = known.declared.get(name.rstrip("'"))
     if declared is not None:
         if declared.text == "1":

@@ -86,15 +86,17 @@ class _Seen:
         mode = self.model.watch.mode(contact)
         if not mode.closed:
             return self._least("it is passed through by", self._gap(contact), self._size("places"), "m")
-        normals = self._forces(contact, ("n", "n 1", "n 2", "tension", "couple"))
-        pressed = mode.push * normals if contact.unilateral or (mode.sense != 0 and not contact.round) else normals[:0]
+        normals = self._normals(contact)
+        signed = contact.unilateral or (mode.sense != 0 and contact.holds_both_ways)
+        pressed = mode.push * normals if signed else normals[:0]
         wrong = self._least("it would have to pull by", pressed, self._most, "N")
-        if contact.mu is None or wrong:
+        if contact.grip is None or wrong:
             return wrong
         system = self.model.system
         if mode.sense == 0:
-            grip = self._along(system.scope.value(contact.mu)) * np.hypot.reduce(normals, axis=0)
-            held = np.hypot.reduce(self._forces(contact, ("t", "s")), axis=0)
+            whole = np.hypot.reduce(normals, axis=0) if len(normals) else 1.0
+            grip = self._along(system.scope.value(contact.grip)) * whole
+            held = np.hypot.reduce(self._forces(contact, ("t", "s", "friction")), axis=0)
             return self._least("it sticks beyond its grip by", grip - held, self._most, "N")
         v = (mode.sense or 0) * self._along(sliding_velocity(system, contact))
         return self._least("it slides against its sense by", v, self._size("rates"), "m/s")
@@ -129,10 +131,18 @@ class _Seen:
     def _most(self) -> float:
         return float(np.nanmax(np.abs(self._columns[1]), initial=0.0))
 
+    def _normals(self, contact: Contact) -> np.ndarray:
+        """Components of the normal force, k x n; none of a joint with friction of constant size."""
+        if contact.size is not None:
+            return np.zeros((0, len(self.track[0])))
+        across = ("x", "y", "z") if contact.of_joint else ()
+        return self._forces(contact, ("n", "n 1", "n 2", "tension", "couple", *across))
+
     def _forces(self, contact: Contact, labels: tuple[str, ...]) -> np.ndarray:
         """Components of a contact's force, k x n."""
         kind = "joint" if contact.of_joint and labels[0] == "n" else "constraint"
-        mine = [c for c in self.model.reactions.components if c.owner == contact.name and c.kind == kind]
+        owner = contact.body if kind == "joint" else contact.name
+        mine = [c for c in self.model.reactions.components if c.owner == owner and c.kind == kind]
         names, found = self._columns
         requested = [names.index(c.name) for c in mine if c.label in labels]
         if not requested or np.isnan(found[:, requested]).all():
@@ -532,7 +542,7 @@ def pushing_otherwise(equations: EquationsOfMotion, start: State, moving: Callab
         NoValue: something has no value there.
     """
     system = equations.system
-    named = [c.name for c in system.scope.model.contacts if c.friction is not None and not (c.unilateral or c.round)]
+    named = [c.name for c in system.scope.model.contacts if c.holds_both_ways]
     modes = {name: system.modes.get(name, ContactMode()) for name in named}
     for name, mode in modes.items():
         if not mode.closed or mode.sense is not None:  # a phase of a motion: its own start is another

@@ -13,6 +13,7 @@ from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.mechanics.kinematics import (
     Applied,
     BodyLink,
+    ContactMode,
     JointEffort,
     SystemScene,
 )
@@ -21,6 +22,7 @@ from eomgen.model import (
     CoupleOn,
     Element,
     GivenEnergy,
+    JointFriction,
     PushAlong,
     PushAlongLine,
     PushAt,
@@ -153,7 +155,7 @@ class _Declared(InNumbers):
     def works(self, way: Way) -> list[Any]:
         """Virtual work of every act and every joint, along a direction of motion."""
         terms = [term for act in self.acts for term in self._terms(act)]
-        terms += [term for push in self._in_joints for term in self._of_joint(push)]
+        terms += [self._of_joint(link, push) for link, push in self._in_joints]
         rates = way.rates([moving for moving, _ in terms])
         return [k * x for (_, k), x in zip(terms, rates, strict=True)]
 
@@ -163,9 +165,9 @@ class _Declared(InNumbers):
             yield from force.acts
 
     @property
-    def _in_joints(self) -> Iterator[PushAlong]:
+    def _in_joints(self) -> Iterator[tuple[BodyLink, PushAlong]]:
         for link in self.system.motion.links:
-            yield from () if link.joint is None else link.joint.pushes()
+            yield from () if link.joint is None else ((link, push) for push in link.joint.pushes())
 
     def _terms(self, act: Act) -> Iterator[Term]:
         scope = self.system.scope
@@ -192,13 +194,14 @@ class _Declared(InNumbers):
             if couple[axis]:
                 yield from ((R[i][k], couple[axis] * now[3 * j + k]) for k in range(3))
 
-    def _of_joint(self, push: PushAlong) -> Iterator[Term]:
-        """(push - c s' - k (s - rest)) ds, s' along the motion."""
+    def _of_joint(self, link: BodyLink, push: PushAlong) -> Term:
+        """(push - c s' - k (s - rest) and dry friction) ds, s' along the motion."""
         scope = self.system.scope
         s = scope.value(push.way)
         f, k, c, rest, now = self.at((*map(scope.value, (push.push, push.stiffness, push.damping, push.rest)), s))
-        rate = way_through(self.system, self.state).rates((s,))[0] if c else 0
-        yield s, f - c * rate - k * (now - rest)
+        moves = c or push.friction is not None
+        rate = way_through(self.system, self.state).rates((s,))[0] if moves else 0
+        return s, f - c * rate - k * (now - rest) + dry_friction(self.system, self.state, (link, push), rate)
 
     # -- loads on bodies -------------------------------------------------------------------------------------
 
@@ -315,13 +318,28 @@ def _in_joint(system: System, state: State, effort: JointEffort) -> str:
     declared = tuple(map(scope.value, (law.push, law.damping, law.stiffness, law.rest)))
     drive, c, k, rest, stated, V = evaluate((*declared, effort.effort, effort.potential), state, fifty_digits())
     s, rate = _joint_motion(system, state, link, effort.variable)
-    stretch = s - rest
+    stretch, drive = s - rest, drive + dry_friction(system, state, (link, law), rate)
     if _turns(link, effort.variable) and k != 0:
         stretch = _by_whole_turns(stretch, (drive - c * rate - stated) / k)
     left, energy = stated - (drive - c * rate - k * stretch), k * stretch * stretch / 2
     if abs(left) > tolerances.ZERO_AT_50 * (1 + abs(stated)):
         return "pushes otherwise than its drive, rate and place say"
     return _energy(V, energy)
+
+
+def dry_friction(system: System, state: State, acting: tuple[BodyLink, PushAlong], rate: Any) -> Any:
+    """- T sign(s'), in a phase of the sense of its mode, or - T tanh(s'/v): of constant size, as it is declared."""
+    link, push = acting
+    law: JointFriction | None = push.friction
+    if law is None or law.size is None:
+        return 0
+    given = (law.size, *(() if law.smooth is None else (law.smooth,)))
+    size, *speed = evaluate(tuple(map(system.scope.value, given)), state, fifty_digits())
+    if speed:
+        return -size * fifty_digits().functions["tanh"](rate / speed[0])
+    (name,) = (link.joint.named_contact(link.name, field) for _, field, each in link.joint.frictions if each is law)
+    sense = system.modes.get(name, ContactMode()).sense
+    return -size * ((rate > 0) - (rate < 0) if sense is None else sense)
 
 
 def _energy(stated: Any, due: Any) -> str:

@@ -28,12 +28,13 @@ from eomgen.symbolic.numeric import FLOAT, evaluate, tolerances
 #
 # Each function is positive while the configuration holds:
 #
-#     closed, and can end:   N                 sticks:   mu |N| - |F|, F what holds it
+#     closed, and can end:   N                 sticks:   mu |N| - |F|, F what holds it (of joints T - |F|)
 #     slides:                push N            open:     the gap, of a string the integral of its rate
 #     slides:                sense v           on a piece of a path:   the way to each of its ends
 
 
 PRESSING = ("n", "tension", "couple")  # rows of a contact that can only push, or only pull
+HOLDING = ("t", "s", "friction")  # rows that let a contact, or a joint, stick
 STOPPED = Fraction(1, 10**7)  # on a surface [m/s]
 
 
@@ -43,8 +44,8 @@ class Signal:
 
     Args:
         owner: the contact.
-        what: "N", of a string also "N2", ...; "hold", the force that lets it stick; "mu"; "slide", "slide'"; "gap",
-            "gap'", "gap''".
+        what: "N", of a string also "N2", ...; "hold", the force that lets it stick; "grip", the largest that can, of a
+            unit of N where there is one; "slide", "slide'"; "gap", "gap'", "gap''".
         value: over the phase's symbols, accelerations and multipliers; of a gap without a formula None.
         column: of what follows from the balance of the bodies, its name among their reactions.
     """
@@ -149,10 +150,10 @@ class ContactEvents:
             tensions = [value for what, value in signals.items() if what[0] == "N"]
             several = len(tensions) > 1
             found += [EventFunction(name, "ends", x, "force", row=k * several) for k, x in enumerate(tensions, start=1)]
-        elif mode.sense != 0 and not contact.round:
+        elif mode.sense != 0 and contact.holds_both_ways:
             found.append(EventFunction(name, "turns", mode.push * signals["N"], "force"))
         if mode.sense == 0:
-            grip = signals["mu"] * _size(signals["N"])
+            grip = signals["grip"] * _size(signals.get("N", 1))
             found.append(EventFunction(name, "slips", grip - _size(signals["hold"]), "force"))
         elif mode.sense is not None:
             found.append(EventFunction(name, "stops", mode.sense * signals["slide"] - stopped_below(contact), "rate"))
@@ -181,17 +182,17 @@ class ContactEvents:
         name = contact.name
         normals = enumerate(self._normals(contact), start=1)
         found = [Signal(name, f"N{k}" if k > 1 else "N", value, column) for k, (value, column) in normals]
-        if contact.mu is None:
+        if contact.grip is None:
             return found
         v, scope = sliding_velocity(self.system, contact), self.system.scope
         found += [Signal(name, "slide", v), Signal(name, "slide'", scope.with_accelerations((v,))[0])]
         if self.mode(contact).sense == 0:
-            found += [Signal(name, "mu", scope.value(contact.mu)), Signal(name, "hold", *self._holding(name))]
+            found += [Signal(name, "grip", scope.value(contact.grip)), Signal(name, "hold", *self._holding(name))]
         return found
 
     def _holding(self, name: str) -> tuple[Scalar, str]:
         """Friction force that holds a sticking contact, as of `_reaction`; on a surface sqrt(F_t^2 + F_s^2)."""
-        held = [r for r in self.system.constraints.rows if r.constraint == name and r.component in ("t", "s")]
+        held = [r for r in self.system.constraints.rows if r.constraint == name and r.component in HOLDING]
         forces = [self._reaction(row) for row in held]
         return forces[0] if len(forces) == 1 else _resultant(forces)
 
@@ -200,9 +201,11 @@ class ContactEvents:
 
         Each as (value, name of its column).
         """
+        if contact.size is not None:
+            return []
         if contact.of_joint:
-            labels = ("n 1", "n 2") if contact.round else ("n",)
-            found = [self._component(contact.name, "joint", label, 1) for label in labels]
+            across = self.reactions.of_joint(contact.body)
+            found = [(self.reactions.value(j), self.reactions.components[j].name) for j in across]
         else:
             mine = [r for r in self.system.constraints.rows if r.constraint == contact.name]
             found = [self._reaction(r) for r in mine if r.component.partition(" ")[0] in PRESSING]
@@ -235,7 +238,7 @@ def stopped_below(contact: Contact) -> Fraction | int:
 def sliding_velocity(system: System, contact: Contact) -> Scalar:
     """Sliding velocity of a closed contact with friction, along its tangent [m/s]."""
     if contact.of_joint:
-        return system.motion.link(contact.name).s_rate[0]
+        return system.motion.link(contact.body).s_rate[contact.variable]
     return next(r.sliding for r in system.constraints.rows if r.constraint == contact.name and r.tangent)
 
 
@@ -291,7 +294,11 @@ class ContactSignals:
 
     def sizes(self, t: float, x: np.ndarray) -> tuple[float, float]:
         """Largest force and largest acceleration at one state, the latter at least 1 m/s^2."""
-        forces = [abs(v) for (_, what), v in self.look(t, x).items() if what[0] in "Nh" and np.isfinite(v)]
+        forces = [
+            abs(v)
+            for (_, what), v in self.look(t, x).items()
+            if what[0] in "Nhg" and what[:3] != "gap" and np.isfinite(v)
+        ]
         found = np.abs(self._sized.many(np.array([t]), self.functions.inner(x)[None, :], self.functions.p)[0])
         n = len(self.functions.equations.symbols.u)
         return max([*forces, *found[:n]], default=0.0), max([1.0, *found[n:]])
@@ -357,7 +364,9 @@ class ContactSignals:
                 (mode.sense or 0) * signals[name, "slide"] - slowing * float(stopped_below(self.watch.contact(name)))
             )
         if bound.kind == "slips":
-            return np.asarray(signals[name, "mu"] * np.abs(signals[name, "N"]) - np.abs(signals[name, "hold"]))
+            return np.asarray(
+                signals[name, "grip"] * np.abs(signals.get((name, "N"), 1.0)) - np.abs(signals[name, "hold"])
+            )
         return mode.push * signals[name, f"N{bound.row}" if bound.row > 1 else "N"]
 
     @cached_property

@@ -354,7 +354,7 @@ def settled(
 
 
 def _closed(contact: Contact) -> ContactMode:
-    return STICKS if contact.mu is not None else ContactMode()
+    return STICKS if contact.dry else ContactMode()
 
 
 def _made(phase_models: PhaseModels, tried: Configuration, refused: list[DerivationError]) -> PhaseModel | None:
@@ -383,7 +383,7 @@ def _sliding(
     apart: frozenset[str],
 ) -> dict[str, int]:
     """The sense of sliding of every contact with Coulomb friction; 0 where it does not slide."""
-    if all(contact.mu is None for contact in contacts):
+    if not any(contact.dry for contact in contacts):
         return {}
     closed = Configuration(Table({c.name: OPEN if c.name in apart else ContactMode() for c in contacts}), Table(pieces))
     found, still = phase_models.slides(closed).at(t, values), smallest_speed(values)
@@ -408,8 +408,8 @@ def _modes(contact: Contact, sense: int, before: Configuration | None) -> list[C
         return [ContactMode(), OPEN]
     old = None if before is None else before.modes.get(contact.name)
     first = 1 if old is None else old.push
-    pushes = (1,) if contact.unilateral or contact.round else (first, -first)
-    if contact.mu is None:
+    pushes = (first, -first) if contact.holds_both_ways else (1,)
+    if not contact.dry:
         modes = [ContactMode(push=push) for push in pushes]
     elif sense:
         modes = [ContactMode(sense=sense, push=push) for push in pushes]
@@ -460,7 +460,7 @@ def _signs(
     if contact.unilateral or mode.sense != 0:
         yield from ((mode.push * N, 0.0) for (owner, what), N in found.items() if owner == name and what[0] == "N")
     if mode.sense == 0:
-        grip = found[name, "mu"] * abs(found[name, "N"]) - abs(found[name, "hold"])
+        grip = found[name, "grip"] * abs(found.get((name, "N"), 1.0)) - abs(found[name, "hold"])
         yield grip if np.isfinite(found[name, "hold"]) else -np.inf, -abs(found[name, "slide'"])  # at a dead centre
     elif mode.sense is not None and sense == 0 and not contact.surface:
         yield 0.0, mode.sense * found[name, "slide'"]

@@ -147,7 +147,7 @@ class PhaseModels:
             self._slides[configuration] = self._origin[0].slides(configuration).with_parameters(self.p)
         if configuration not in self._slides:
             model = on_pieces(self.model, configuration.pieces)
-            with_friction = [c for c in model.contacts if c.mu is not None and configuration.modes[c.name].closed]
+            with_friction = [c for c in model.contacts if c.dry and configuration.modes[c.name].closed]
             self._slides[configuration] = Slides(self._system(model, configuration), tuple(with_friction), self.p)
         return self._slides[configuration]
 

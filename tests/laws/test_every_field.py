@@ -31,6 +31,8 @@ mu = 0.2
 TENSOR = "mass = 'm'\ncenter = [0.1, -0.05, 0.2]\ninertia = [0.3, 0.4, 0.5, 0.02, -0.03, 0.01]\n"
 REBOUNDS = "restitution = 'mu'"
 STOPS = "limits = [-1, 'l'], restitution = 'mu'"
+RUBS = ", friction = { torque = 0.4, static = 0.5 }"
+SLIDES = ", friction = { force = 0.7 }"
 EFFORTS = "stiffness = 'k', damping = 'c', rest = 0.3, armature = 0.05"
 
 
@@ -148,7 +150,7 @@ y = 0.2
 d = { start = 0.3, speed = 0.5 }
 [bodies.one]
 shape = { kind = "rod", mass = "m", length = "l" }
-joint = { kind = "revolute", at = [0.1, 0.2], point = "end", angle = "q", torque = "2 - q'", STOPS, EFFORTS }
+joint = { kind = "revolute", at = [0.1, 0.2], point = "end", angle = "q", torque = "2 - q'", STOPS, EFFORTS RUBS }
 [bodies.two]
 shape = { kind = "rectangle", mass = "m", width = "l", height = "r" }
 joint = { kind = "prismatic", on = "one.start", axis = [1, 2], displacement = "s", angle = 0.4, force = "t", ALL }
@@ -158,7 +160,8 @@ joint = { kind = "fixed", on = "two", at = ["r", 0], angle = 0.3 }
 [bodies.four]
 shape = { kind = "disc", mass = "m", radius = "r" }
 joint = { kind = "planar", on = "two", x = "x", y = "y", angle = "d", limits = { x = [-1, "r"] }, restitution = 0.1 }
-""".replace("ALL", "STOPS, EFFORTS")
+""".replace("ALL", "STOPS, EFFORTS" + SLIDES)
+    .replace(" RUBS", RUBS)
     .replace("EFFORTS", EFFORTS)
     .replace("STOPS", STOPS),
     "placed": """
@@ -269,7 +272,8 @@ SPACE = {
         "b",
     ),
     "screw": jointed(
-        f'kind = "screw", {SEAT}, axis = [1, -2, 2], angle = "a", pitch = 0.15, torque = "t", {STOPS}, {EFFORTS}', "a"
+        f'kind = "screw", {SEAT}, axis = [1, -2, 2], angle = "a", pitch = 0.15, torque = "t", {STOPS}, {EFFORTS}{RUBS}',
+        "a",
     ),
     "universal": jointed(f'kind = "universal", {SEAT}, axes = [[1, 0, 0.2], [0, 1, 0]], angles = ["a", "b"]', "a", "b"),
     "planar": jointed(f'kind = "planar", {SEAT}, x = "a", y = "b", angle = "d"', "a", "b", "d"),

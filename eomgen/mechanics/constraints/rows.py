@@ -12,13 +12,13 @@ from eomgen.errors import DerivationError, ModelError, NotYet
 from eomgen.frozen import RECALLED, dataclass
 from eomgen.mechanics.kinematics import (
     GROUND,
-    BodyLink,
     ContactMode,
     ContactModes,
     Motion,
     SystemScene,
+    pushed_along,
 )
-from eomgen.model import ConstraintRow, PointForce, Push
+from eomgen.model import ConstraintRow, Contact, Couple, JointFriction, PointForce, Push
 from eomgen.symbolic.exact import Equality, equal_at_random_states, equal_at_real_states, equal_in_field, readable
 from eomgen.symbolic.expression import (
     Fraction,
@@ -66,7 +66,7 @@ class Row:
         gap: phi(q, t), or None where only the velocity row is given.
         status: "identical": the coordinates satisfy the row by themselves; "eliminated": it determines a dependent
             coordinate; both only carry a reaction. "closing": it restricts the speeds, by a multiplier.
-        component: "x", "y", "z", "n", "t", "couple", "tension", or "".
+        component: "x", "y", "z", "n", "t", "couple", "tension", "friction" (of a joint), or "".
         pushes: the forces and couples behind `wrenches`, as the constraint gave them.
         tangent: of a contact that has friction, the forces and couples for a unit of friction along it.
         sliding: the sliding velocity dual to it [m/s]; on a surface, with Coulomb's friction, its magnitude.
@@ -194,8 +194,9 @@ class Constraints:
                 row = _row(motion, name, number, constraint_row, used=label in (used or {}))
                 row = replace(row, eliminates=(used or {}).get(label, ""))
                 rows.append(_with_friction(scene, constraint, row, mode))
-        stuck = [link for link in motion.links if link.name in (modes or {}) and (modes or {})[link.name].sense == 0]
-        rows += [_row(motion, link.name, 1, _held_on_path(motion, link), used=False) for link in stuck]
+        held = [c for c in motion.scope.model.rough_contacts if c.of_joint and c.name in (modes or {})]
+        stuck = [contact for contact in held if (modes or {})[contact.name].sense == 0]
+        rows += [_row(motion, contact.name, 1, _held_in_joint(motion, contact), used=False) for contact in stuck]
         return Constraints(motion, tuple(rows))
 
 
@@ -206,13 +207,22 @@ def rows_of_constraint(motion: Motion, name: str) -> tuple[Row, ...]:
     return tuple(_row(motion, name, number, row, used=False) for number, row in enumerate(rows, start=1))
 
 
-def _held_on_path(motion: Motion, link: BodyLink) -> ConstraintRow:
-    """The row that keeps a body on a path where it is while it sticks: no velocity along the path."""
-    _, v = link.S[0]
-    along = link.pose.R @ v
-    parent = None if link.parent == GROUND else motion.links[link.parent].name
-    pushes = (PointForce((link.name, link.point), along), PointForce((parent, link.local.p), -along))
-    return ConstraintRow(pushes, None, component="t", material=True)
+def _held_in_joint(motion: Motion, contact: Contact) -> ConstraintRow:
+    """The row that keeps a body where it is on its path, or in its joint, while that sticks: no velocity along it."""
+    link = motion.link(contact.body)
+    force, couple = (link.pose.R @ x for x in pushed_along(link, contact.variable, 1))
+    places = (
+        (link.name, link.point),
+        (None if link.parent == GROUND else motion.links[link.parent].name, link.local.p),
+    )
+    pushes: tuple[Push, ...] = ()
+    if any(not is_zero(x) for x in force):
+        pushes = tuple(PointForce(place, sign * force) for place, sign in zip(places, (1, -1), strict=True))
+    else:
+        turned = zip(places, (1, -1), strict=True)
+        pushes = tuple(Couple(at[0], sign * couple, place=at) for at, sign in turned if at[0] is not None)
+    label = "friction" if isinstance(contact.friction, JointFriction) else "t"
+    return ConstraintRow(pushes, None, component=label, material=True)
 
 
 def _dragged(name: str) -> DerivationError:

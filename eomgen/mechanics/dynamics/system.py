@@ -127,7 +127,9 @@ class System:
             scope, solved = with_declared_speeds(scope, vanishes=holds_identically, shorter=shorter)
         motion = Motion.of(scope)
         constraints = Constraints.of(motion, {} if elimination is None else elimination.used, self.modes)
-        return System(motion, Loads.of(motion, self.loads.begun), constraints, self.modes, elimination, self, solved)
+        return System(
+            motion, Loads.of(motion, self.loads.begun, self.modes), constraints, self.modes, elimination, self, solved
+        )
 
     @property
     def singular_blocks(self) -> tuple[DependentBlock, ...]:
@@ -208,7 +210,7 @@ class System:
             begun = _carried_places(begun_as, motion.scope)
         elif any(force.of_the_start for force in model.forces.values()):
             begun = Assembly(constraints).begun_places()
-        return System(motion, Loads.of(motion, begun), constraints, modes or {})
+        return System(motion, Loads.of(motion, begun, modes), constraints, modes or {})
 
 
 def system_of(

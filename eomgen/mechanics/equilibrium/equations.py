@@ -397,5 +397,7 @@ def _made_of(free: System, scope: Scope) -> System:
     """The system of another scope over the rates, dependent coordinates eliminated."""
     scope = replace(scope, model=scope.model.altered(speeds=Table({})))
     motion = Motion.of(scope)
-    made = System(motion, Loads.of(motion, free.loads.begun), Constraints.of(motion, modes=free.modes), free.modes)
+    made = System(
+        motion, Loads.of(motion, free.loads.begun, free.modes), Constraints.of(motion, modes=free.modes), free.modes
+    )
     return made.reduced() if scope.dependent else made

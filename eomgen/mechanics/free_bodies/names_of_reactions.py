@@ -7,7 +7,7 @@ surface along both tangents.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from eomgen.frozen import dataclass
@@ -18,7 +18,7 @@ from eomgen.mechanics.kinematics import BodyLink, Motion
 from eomgen.model import PointForce
 from eomgen.symbolic.expression import Node, Scalar, Vector, depends_on, derivative, is_zero
 
-OWN = frozenset(("n", "t", "s", "tension", ""))  # components that outputs name as they are, in space too
+OWN = frozenset(("n", "t", "s", "tension", "friction", ""))  # components that outputs name as they are, in space too
 
 WrenchPart = Callable[[Effect], Vector]
 
@@ -46,7 +46,19 @@ class NamedReaction:
 def named_reactions(balance: Balance) -> tuple[NamedReaction, ...]:
     """Every reaction by its name, in the order of the components."""
     owners = dict.fromkeys(c.owner for c in balance.components)
-    return tuple(named for owner in owners for named in _of_owner(balance, owner))
+    found = [named for owner in owners for named in _of_owner(balance, owner)]
+    return (*found, *_of_sliding_joints(balance, {named.name for named in found}))
+
+
+def _of_sliding_joints(balance: Balance, found: Container[str]) -> Iterator[NamedReaction]:
+    """The dry friction of constant size in joints: friction(rod), where it does not stick."""
+    for effort in balance.system.loads.efforts:
+        link = balance.system.motion.link(effort.body)
+        for k, field, law in link.joint.frictions:
+            name = link.joint.named_contact(link.name, field)
+            if k == effort.variable and law.size is not None and f"friction({name})" not in found:
+                turns = not all(is_zero(x) for x in link.S[k][0])
+                yield NamedReaction(f"friction({name})", name, COUPLE if turns else FORCE, {}, effort.friction)
 
 
 def is_named_alone(balance: Balance, c: Component) -> bool:
@@ -77,7 +89,8 @@ def _of_owner(balance: Balance, owner: str) -> Iterable[NamedReaction]:
     for j, c in apart:
         yield NamedReaction(_name(balance, c), owner, c.unit, {j: 1})
         for share in c.friction:
-            yield NamedReaction(f"reaction_{share.label}({owner})", owner, FORCE, {j: share.factor})
+            name = f"friction({owner})" if share.label == "friction" else f"reaction_{share.label}({owner})"
+            yield NamedReaction(name, owner, FORCE, {j: share.factor})
     for j, c in mine:
         if c.kind == "drive" and j == min(drives := _drives(balance, j, c)):  # once, at the first of its joints
             yield NamedReaction(c.name, owner, c.unit, drives, _less_inside(balance, c))

@@ -35,7 +35,7 @@ from eomgen.mechanics.free_bodies.solution import (
     solution_of_balance,
 )
 from eomgen.mechanics.free_bodies.structure import Structure
-from eomgen.mechanics.free_bodies.wrenches import Component, Effect, efforts_of
+from eomgen.mechanics.free_bodies.wrenches import Component, Effect, efforts_of, normals_of_joint
 from eomgen.mechanics.kinematics import Motion
 from eomgen.mechanics.start import values_where_at_rest
 from eomgen.mechanics.state import Numbers
@@ -212,6 +212,23 @@ class Reactions:
                     {j: self._replaced(Vector((k, 0, 0)))[0] for j, k in named.combination.items()}, name
                 )
         return self._labelled(owner, along, "friction")
+
+    def of_joint(self, body: str) -> tuple[int, ...]:
+        """Indices of the forces of a joint, across a slide or path, of a hinge all of them."""
+        return normals_of_joint(self.components, body)
+
+    def friction_of_joint(self, joint: str) -> Scalar:
+        """Dry friction along a variable of a joint, sliding or sticking, on the body.
+
+        Raises:
+            DerivationError: the joint has none; it is indeterminate.
+        """
+        for named in named_reactions(self.balance):
+            if named.name == f"friction({joint})":
+                given = self._replaced(Vector((named.given, 0, 0)))[0]
+                total: Scalar = given + self.combined(named.combination, named.name)
+                return total
+        raise DerivationError(f"the joint '{joint}' has no dry friction", fix="name a joint with `friction`")
 
     def member(self, truss: str, first: str, second: str) -> Scalar:
         """Tension of the member of a truss between two nodes.

@@ -200,7 +200,8 @@ class Component:
     Args:
         owner: the constraint, or the body whose joint it is.
         kind: "constraint", "joint", or "drive": what moves a driven coordinate at a joint.
-        label: "x", "y", "z", "n", "t", "couple", "couple x", "wrench 1", "tension", "drive"; "" of a row of no place.
+        label: "x", "y", "z", "n", "t", "couple", "couple x", "wrench 1", "tension", "drive", "friction" (of a joint);
+            "" of a row of no place.
         number: its row in the constraint, or its place among the joint's components, from 1.
         effects: of a unit of it, on the child or the first-named body first.
         friction: along each direction in which its contact slides.
@@ -242,6 +243,8 @@ class Component:
             return f"tension({self.owner}, {which})" if which else f"tension({self.owner})"
         if self.label == "drive":
             return f"drive({self.side or self.owner})"
+        if self.label == "friction":
+            return f"friction({self.owner})"
         owner = f"{self.owner}.{self.side}" if self.side else self.owner
         return f"reaction_{self.label.replace(' ', '_')}({owner})"
 
@@ -433,8 +436,16 @@ def _constraint_effects(axes: Axes, row: Row) -> tuple[Effect, ...]:
 
 def normals_of_round(components: Sequence[Component], friction: Component) -> tuple[int, ...]:
     """Indices of the components of the normal force to which the friction of a bilateral contact belongs."""
+    if friction.kind == "joint":
+        return normals_of_joint(components, friction.owner)
     mine = (friction.kind, friction.owner)
     return tuple(j for j, c in enumerate(components) if (c.kind, c.owner) == mine and c.label.startswith("n "))
+
+
+def normals_of_joint(components: Sequence[Component], body: str) -> tuple[int, ...]:
+    """Indices of the forces of a joint, across a slide or path, of a hinge all of them."""
+    labels = ("n", "n 1", "n 2", "x", "y", "z")
+    return tuple(j for j, c in enumerate(components) if (c.kind, c.owner) == ("joint", body) and c.label in labels)
 
 
 def _friction(axes: Axes, row: Row) -> tuple[FrictionShare, ...]:

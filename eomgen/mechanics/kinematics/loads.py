@@ -13,7 +13,7 @@ from functools import cached_property
 from eomgen.errors import DerivationError, NotYet
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics.motion import BodyLink, Motion
-from eomgen.mechanics.kinematics.scene import SystemScene
+from eomgen.mechanics.kinematics.scene import ContactMode, ContactModes, SystemScene
 from eomgen.model import Couple, GeneralizedForce, Load, PointForce, SpreadLoad, UniformField
 from eomgen.symbolic.expression import (
     Fraction,
@@ -52,14 +52,15 @@ class Applied:
 
 @dataclass(frozen=True)
 class JointEffort:
-    """A scalar force on a joint's variable: drive, spring and damper of the joint.
+    """A scalar force on a joint's variable: drive, spring, damper and dry friction of constant size.
 
     Args:
         body: the child; the parent bears the opposite.
         variable: index of the joint's variable s.
-        drive: torque or force without a potential (damping included) [N m or N].
+        drive: torque or force without a potential (damping and friction included) [N m or N].
         potential: k (s - rest)^2 / 2 [J], or 0.
         effort: the whole effort along s, -dV/ds included.
+        friction: the dry friction in it.
     """
 
     body: str
@@ -67,6 +68,7 @@ class JointEffort:
     drive: Scalar
     potential: Scalar
     effort: Scalar
+    friction: Scalar = 0
 
     def wrenches(self, motion: Motion) -> list[tuple[str, Wrench]]:
         """The effort of a joint as wrenches at the origins of child and parent, each in its own axes.
@@ -225,11 +227,12 @@ class Loads:
         return _summed(rows, size)
 
     @staticmethod
-    def of(motion: Motion, begun: Mapping[Node, Scalar] | None = None) -> Loads:
+    def of(motion: Motion, begun: Mapping[Node, Scalar] | None = None, modes: ContactModes | None = None) -> Loads:
         """Every applied force of the model, as loads and potentials.
 
         Args:
             begun: where coordinates start that do not start where they are declared to.
+            modes: how joints with dry friction slip or stick.
         """
         applied, begun = [], begun or {}
         for name, force in motion.scope.model.forces.items():
@@ -242,7 +245,7 @@ class Loads:
                 )
             loads, spread = tuple(force.loads(scene)), tuple(force.spread(scene))
             applied.append(Applied(name, loads, force.potential(scene), force.placeless, spread))
-        efforts = [effort for link in motion.links for effort in _joint_efforts(motion, link)]
+        efforts = [effort for link in motion.links for effort in _joint_efforts(motion, link, modes or {})]
         _refuse_accelerations(motion, applied, efforts)
         return Loads(motion, tuple(applied), tuple(efforts), begun)
 
@@ -274,25 +277,31 @@ def _scalars(load: Load) -> tuple[Scalar, ...]:
     return (load.value,) if isinstance(load, GeneralizedForce) else load.acceleration
 
 
-def _joint_efforts(motion: Motion, link: BodyLink) -> list[JointEffort]:
-    """Drive, spring and damper of one joint: effort = drive - c s' - k (s - rest)."""
+def _joint_efforts(motion: Motion, link: BodyLink, modes: ContactModes) -> list[JointEffort]:
+    """Drive, spring, damper and friction of one joint: effort = drive - c s' - T sign(s') - k (s - rest)."""
     if link.joint is None:
         return []
     scope, rows = motion.scope, []
+    frictions = {k: (link.joint.named_contact(link.name, field), law) for k, field, law in link.joint.frictions}
     for k, e in enumerate(link.joint.efforts()):
-        if e is None or (e.drive is None and e.stiffness is None and e.damping is None):
+        name, law = frictions.get(k, ("", None))
+        size = None if law is None else law.size
+        given = (None,) * 4 if e is None else (e.drive, e.damping, e.stiffness, e.rest)
+        if size is None and not any(x is not None for x in given[:3]):
             continue
-        drive = scope.value(e.drive) - scope.value(e.damping) * link.s_rate[k]
+        acting, damping, stiffness, rest = map(scope.value, given)
+        factor = 0 if law is None else modes.get(name, ContactMode()).joint_factor(law, scope.value, link.s_rate[k])
+        friction = 0 if size is None else scope.value(size) * factor
+        drive = acting - damping * link.s_rate[k] + friction
         if motion.moves((*link.before.p, *link.point)):
             raise DerivationError(
-                "a joint with a drive, spring or damper sits at a place that moves in its body",
+                "a joint with a drive, spring, damper or friction sits at a place that moves in its body",
                 f"bodies.{link.name}.joint",
                 "let another joint carry the motion of the seat",
             )
-        stretch = link.s[k] - scope.value(e.rest)
-        stiffness = scope.value(e.stiffness)
+        stretch = link.s[k] - rest
         potential = Fraction(1, 2) * stiffness * stretch * stretch
-        rows.append(JointEffort(link.name, k, drive, potential, drive - stiffness * stretch))
+        rows.append(JointEffort(link.name, k, drive, potential, drive - stiffness * stretch, friction))
     return rows
 
 

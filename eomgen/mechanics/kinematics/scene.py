@@ -13,6 +13,7 @@ from eomgen.mechanics.kinematics.symbols import parameters_of_zero, primitive
 from eomgen.model import (
     BodyPoint,
     ConstraintRow,
+    JointFriction,
     Resistance,
 )
 from eomgen.symbolic.exact import equal_at_random_states, readable_all
@@ -312,6 +313,12 @@ class ContactMode:
             return None
         sense = function("sign", sliding) if self.sense is None else self.sense
         return -self.push * value(law.coulomb) * sense
+
+    def joint_factor(self, law: JointFriction, value: Callable[[Any], Scalar], rate: Scalar) -> Scalar:
+        """- sign(s') of what is dry in a joint, smooth - tanh(s'/v); 0 while it sticks."""
+        if law.smooth is not None:
+            return -function("tanh", over(rate, value(law.smooth)))
+        return -function("sign", rate) if self.sense is None else -self.sense
 
 
 ContactModes = Mapping[str, ContactMode]

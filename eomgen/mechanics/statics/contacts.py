@@ -73,7 +73,7 @@ class ContactsAtStart:
 
         Whether they stick or begin to slide the first phase of the motion decides. () where parameters have no value.
         """
-        if not model.coordinates or not any(c.mu is not None for c in model.contacts):
+        if not model.coordinates or not any(c.dry for c in model.contacts):
             return ()
         start = _StartNumbers(model)
         try:
@@ -93,7 +93,7 @@ def _at_start(model: Model) -> ContactsAtStart:
     if touching and not opened.assumptions:
         let_go = start.leaving(touching, opened.modes)
         opened = ContactsAtStart({**opened.modes, **let_go.modes}, let_go.assumptions)
-    both_ways = [c for c in contacts if c.friction is not None and not c.unilateral and not c.round]
+    both_ways = [c for c in contacts if c.holds_both_ways]
     pushing = start.pushing(both_ways, opened.modes) if both_ways else ContactsAtStart()
     return ContactsAtStart({**opened.modes, **pushing.modes}, (*opened.assumptions, *pushing.assumptions))
 
@@ -184,7 +184,7 @@ class _StartNumbers:
 
     def _let_go(self, touching: Sequence[Contact], opened: ContactModes, drawn: Numbers) -> tuple[str, ...] | None:
         """The contacts that open by the forces; None where no configuration agrees with them."""
-        still = self.still(opened) if any(c.mu is not None for c in touching) else set()
+        still = self.still(opened) if any(c.dry for c in touching) else set()
         for away in islice(product(*((False, True) for _ in touching)), MOST_TRIED):
             free = [c for c, opens in zip(touching, away, strict=True) if opens]
             held = [c for c in touching if c not in free]
@@ -246,8 +246,11 @@ class _StartNumbers:
     def still(self, opened: ContactModes) -> set[str]:
         """The contacts with dry friction that do not slide at the start."""
         system = system_of(self.model, opened)
-        state, rough = _state(system, self.drawn), {c.name for c in self.model.contacts if c.mu is not None}
+        state, rough = _state(system, self.drawn), {c.name for c in self.model.contacts if c.dry}
         sliding: list[tuple[str, Scalar]] = [(name, v) for name, _, v in SystemFriction(system).named if name in rough]
+        for contact in self.model.contacts:
+            if contact.size is not None:
+                sliding.append((contact.name, system.motion.link(contact.body).s_rate[contact.variable]))
         values = evaluate(tuple(v for _, v in sliding), state, fifty_digits())
         return {name for (name, _), v in zip(sliding, values, strict=True) if abs(v) <= tolerances.CARRIED}
 

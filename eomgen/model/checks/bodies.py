@@ -108,6 +108,8 @@ def _joint(catalog: Catalog, name: str, joint: Any) -> Iterator[Diagnostic]:
         )
     else:
         yield from joint.diagnostics(path, catalog)
+        for _, field, law in joint.frictions:
+            yield from law.diagnostics((*path, "friction", *([field] if len(joint.limited) > 1 else [])))
 
 
 def _rings(catalog: Catalog) -> Iterator[Diagnostic]:

@@ -17,6 +17,7 @@ from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.fields import ListRule
 from eomgen.model.kinds import (
     ConstantAngle,
+    JointFriction,
     Limits,
     MovingGroundPlace,
     OwnPointName,
@@ -80,7 +81,7 @@ Move = SlideAlong | TurnAbout | QuaternionTurn | WayAlongPieces
 class PushAlong:
     """Action along a displacement or an angle of a joint, on the child and opposite on the parent; None: nothing.
 
-    push - stiffness (way - rest) - damping way', and armature way'^2 / 2 of kinetic energy.
+    push - stiffness (way - rest) - damping way', and armature way'^2 / 2 of kinetic energy; dry friction by its law.
     """
 
     way: Any
@@ -89,6 +90,7 @@ class PushAlong:
     damping: Any = None
     rest: Any = None
     armature: Any = None
+    friction: Any = None
 
 
 # -------- base ------------------------------------------------------------------------------------------------
@@ -149,7 +151,7 @@ class Joint(Part):
     only_space: ClassVar[bool] = False
     carries_reaction: ClassVar[bool] = True
     straight: ClassVar[bool] = True  # what slides in it keeps its direction
-    limited: ClassVar[tuple[str, ...]] = ()  # the fields of its variables that may have limits, in their order
+    limited: ClassVar[tuple[str, ...]] = ()  # its variables' fields that may have limits or friction, in their order
     seated: ClassVar[bool] = True  # `at` is where the joint sits; else it is among the variables
 
     on: SeatName | None = None
@@ -167,6 +169,20 @@ class Joint(Part):
         each = (given,) if isinstance(given, Limits) else (getattr(given, name) for name in self.limited)
         pairs = zip(self.limited, each, strict=True)
         return tuple((k, name, limits) for k, (name, limits) in enumerate(pairs) if limits is not None)
+
+    @property
+    def frictions(self) -> tuple[tuple[int, str, JointFriction], ...]:
+        """(number of the variable, its field, its friction) of each variable with dry friction."""
+        given = getattr(self, "friction", None)
+        if given is None or not self.limited:
+            return ()
+        each = (given,) if isinstance(given, JointFriction) else (getattr(given, name, None) for name in self.limited)
+        pairs = zip(self.limited, each, strict=True)
+        return tuple((k, name, law) for k, (name, law) in enumerate(pairs) if law is not None)
+
+    def named_contact(self, body: str, field: str) -> str:
+        """Name of what acts along a variable: that of the body, of several variables arm_angle."""
+        return f"{body}_{field}" if len(self.limited) > 1 else body
 
     @property
     def parent(self) -> str | None:

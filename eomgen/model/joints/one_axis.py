@@ -34,6 +34,7 @@ from eomgen.model.kinds import (
     ForceFormula,
     LinearDamping,
     LinearStiffness,
+    PushFriction,
     RestAngle,
     Restitution,
     RestLength,
@@ -43,6 +44,7 @@ from eomgen.model.kinds import (
     SlideLimits,
     SpaceDirection,
     Torque,
+    TurnFriction,
     ValueOf,
 )
 from eomgen.model.part import PartRule
@@ -121,6 +123,7 @@ class Revolute(AxisJoint):
         stiffness, damping, rest, armature: - k (s - rest), - d s', and armature s'^2 / 2 to T.
         limits: [least, largest] of the angle, "inf" for none: rigid stops, in the unit of its coordinate.
         restitution: of the stops: with this share of its speed it rebounds, 0 to 1 (None: not at all).
+        friction: dry: { torque = T }, with `static`, the largest at rest, or `smooth`.
     """
 
     limited: ClassVar[tuple[str, ...]] = ("angle",)
@@ -134,6 +137,7 @@ class Revolute(AxisJoint):
     armature: RotorInertia | None = None
     limits: AngleLimits | None = None
     restitution: Restitution | None = None
+    friction: Annotated[TurnFriction, PartRule(TurnFriction)] | None = None
 
     def turns(self) -> tuple[Expression, ...]:
         return (self.angle,)
@@ -162,6 +166,7 @@ class Revolute(AxisJoint):
                 damping=self.damping,
                 rest=self.rest,
                 armature=self.armature,
+                friction=self.friction,
             ),
         )
 
@@ -184,6 +189,7 @@ class Prismatic(AxisJoint):
         stiffness, damping, rest, armature: - k (s - rest), - d s', and armature s'^2 / 2 to T.
         limits: [least, largest] of the displacement, "inf" for none: rigid stops, in the unit of its coordinate.
         restitution: of the stops: with this share of its speed it rebounds, 0 to 1 (None: not at all).
+        friction: dry: { force = F }, with `static`, the largest at rest, or `smooth`.
     """
 
     limited: ClassVar[tuple[str, ...]] = ("displacement",)
@@ -198,6 +204,7 @@ class Prismatic(AxisJoint):
     armature: SlideInertia | None = None
     limits: SlideLimits | None = None
     restitution: Restitution | None = None
+    friction: Annotated[PushFriction, PartRule(PushFriction)] | None = None
 
     def turns(self) -> tuple[Expression, ...]:
         return ()
@@ -234,6 +241,7 @@ class Prismatic(AxisJoint):
                 damping=self.damping,
                 rest=self.rest,
                 armature=self.armature,
+                friction=self.friction,
             ),
         )
 
@@ -316,6 +324,7 @@ class Screw(AxisJoint):
         stiffness, damping, rest, armature: - k (s - rest), - d s', and armature s'^2 / 2 to T.
         limits: [least, largest] of the angle, "inf" for none: rigid stops, in the unit of its coordinate.
         restitution: of the stops: with this share of its speed it rebounds, 0 to 1 (None: not at all).
+        friction: dry: { torque = T }, with `static`, the largest at rest, or `smooth`.
     """
 
     limited: ClassVar[tuple[str, ...]] = ("angle",)
@@ -331,6 +340,7 @@ class Screw(AxisJoint):
     armature: RotorInertia | None = None
     limits: AngleLimits | None = None
     restitution: Restitution | None = None
+    friction: Annotated[TurnFriction, PartRule(TurnFriction)] | None = None
 
     def turns(self) -> tuple[Expression, ...]:
         return (self.angle,)
@@ -359,5 +369,6 @@ class Screw(AxisJoint):
                 damping=self.damping,
                 rest=self.rest,
                 armature=self.armature,
+                friction=self.friction,
             ),
         )

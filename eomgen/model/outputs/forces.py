@@ -9,6 +9,7 @@ from eomgen.model.diagnostics import Diagnostic, nearest
 from eomgen.model.fields import Leaf
 from eomgen.model.outputs.base import (
     AXES,
+    DRY_JOINT,
     SIDES,
     OutputContext,
     OutputFunction,
@@ -109,6 +110,16 @@ CONTACT_REACTION = OutputFunction(
 # multiplier, drive, pull, couple: along the gap of a constraint, a driven coordinate, a spring, a damper.
 
 
+FRICTION_OF_JOINT = OutputFunction(
+    names=("friction",),
+    kinds=(DRY_JOINT,),
+    least=1,
+    unit="J",
+    per=(0,),
+    gives="dry friction in a [joint](joints.md#dry-friction), on the body along its variable: N m of an angle, else N",
+    value=lambda scene, call: scene.reactions.friction_of_joint(call.name_at(0)),
+    source=OutputSource.BALANCE,
+)
 MULTIPLIER = OutputFunction(
     names=("multiplier",),
     kinds=("constraint",),
