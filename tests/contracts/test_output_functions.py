@@ -184,6 +184,23 @@ same = { kind = "equation", gap = "s - l*q/2" }
 kind = "gravity"
 acceleration = [0, "-g"]
 """,
+    "stiff": """
+eomgen = 1
+space = "plane"
+[parameters]
+l = { value = 1.5, unit = "m" }
+m = { value = 2, unit = "kg" }
+g = { value = 9.81, unit = "m/s^2" }
+T = { value = 3, unit = "N*m" }
+[coordinates]
+q = { start = 0.3, speed = 1, unit = "rad" }
+[bodies.rod]
+shape = { kind = "rod", mass = "m", length = "l" }
+joint = { kind = "revolute", point = "start", angle = "q", friction = { torque = "T" } }
+[forces.weight]
+kind = "gravity"
+acceleration = [0, "-g"]
+""",
 }
 """Models without a number that has a dimension: what is measured in other units is the same model."""
 POINTS = ("arm.end", "arm.end, table", "arm.end, slide, table")
@@ -228,13 +245,14 @@ CALLS = {
     "block": ["reaction_n(floor)", "reaction_t(floor)", "reaction_s(floor)"],
     "tied": ["tension(rope)"],
     "coupled": ["multiplier(same)"],
+    "stiff": ["friction(rod)"],
 }
 ALONG = [f"{name}(q)" for name in "max min mean rms last time_of_max time_of_min period".split()]
 LINEAR = {"plane": ["mass(x, q)", "damping(q, q)", "stiffness(x, x)", "frequency(1)"]}
 CASES = [(model, call) for model, calls in CALLS.items() for call in calls]
 PROVEN_TWICE = [case for case in CASES if FUNCTIONS[case[1].partition("(")[0]].second is not None]
 SIZES = {"length": Fraction(2), "mass": Fraction(3), "time": Fraction(5)}
-GAPS = {"same": "m"}
+GAPS = {"same": "m", "rod": "rad"}
 
 # What has no second definition of its own, and why
 CERTIFIED = {
