@@ -252,7 +252,7 @@ DOORS = {  # rooms that are imported through what their stub names, and how many
     "results": 16,
     "study": 16,
     "proof": 67,
-    "model": 130,
+    "model": 131,
     "mechanics.kinematics": 22,
     "mechanics.constraints": 21,
     "mechanics.dynamics": 25,
@@ -377,7 +377,7 @@ def test_a_newcomer_has_no_more_to_know_than_was_reached(house):
     assert len(house.chapters) <= 362
     assert max(m.lines for m in house.modules.values()) <= 700
     assert len(house.private) <= 59
-    assert len(house.taken_from(("symbolic", "model", "mechanics", "codegen", "simulation"))) <= 606
+    assert len(house.taken_from(("symbolic", "model", "mechanics", "codegen", "simulation"))) <= 607
     assert {room: k for room in FOREIGN if (k := len(house.taken_by(room))) > FOREIGN[room]} == {}
 
 
