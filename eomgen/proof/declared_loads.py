@@ -22,7 +22,6 @@ from eomgen.model import (
     CoupleOn,
     Element,
     GivenEnergy,
-    JointFriction,
     PushAlong,
     PushAlongLine,
     PushAt,
@@ -330,7 +329,7 @@ def _in_joint(system: System, state: State, effort: JointEffort) -> str:
 def dry_friction(system: System, state: State, acting: tuple[BodyLink, PushAlong], rate: Any) -> Any:
     """- T sign(s'), in a phase of the sense of its mode, or - T tanh(s'/v): of constant size, as it is declared."""
     link, push = acting
-    law: JointFriction | None = push.friction
+    law = push.friction
     if law is None or law.size is None:
         return 0
     given = (law.size, *(() if law.smooth is None else (law.smooth,)))
