@@ -66,7 +66,9 @@ def _table(cls: type, what: str) -> TableRule:
     return TableRule(PartRule(cls), what)
 
 
-Constraints = Annotated[Table[Constraint], TableRule(SeamRule("constraint", constraints.ALL), "constraint")]
+Constraints = Annotated[
+    Table[Constraint], TableRule(SeamRule("constraint", constraints.ALL, constraints.MADE), "constraint")
+]
 Forces = Annotated[Table[Force], TableRule(SeamRule("force", forces.ALL), "force")]
 
 

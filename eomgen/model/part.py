@@ -235,14 +235,16 @@ class SeamRule:
     Args:
         what: what a member is called: "shape", "joint", "force", "constraint".
         members: the seam's tuple ALL.
+        made: members that nobody declares: other parts of a model make them.
     """
 
     what: str
     members: tuple[Any, ...]
+    made: tuple[Any, ...] = ()
 
     def read(self, raw: Any, path: DocumentPath, found: list[Diagnostic], beside: tuple[str, ...] = ()) -> Any:
         """A member of the seam; the keys `beside` its own are read already, and are known here."""
-        if isinstance(raw, self.members):
+        if isinstance(raw, (*self.members, *self.made)):
             return raw
         if not isinstance(raw, Mapping):
             named = f"each has a name of its own: [{path[0]}.NAME]" if len(path) == 2 else ""

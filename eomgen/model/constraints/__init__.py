@@ -6,7 +6,7 @@ Adding one is one class, next to its kin or in a file of its own, and one name h
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.driven import Gear, Motion
 from eomgen.model.constraints.equation import Equation
-from eomgen.model.constraints.held import Clamp, Guide, Skate, Slider, Support
+from eomgen.model.constraints.held import Clamp, Guide, Limit, Skate, Slider, Support
 from eomgen.model.constraints.link import Link
 from eomgen.model.constraints.pin import Pin
 from eomgen.model.constraints.rolling import Rolling
@@ -14,13 +14,18 @@ from eomgen.model.constraints.string import String
 
 ALL = (Pin, Support, Clamp, Guide, Slider, Link, Rolling, Skate, String, Gear, Equation, Motion)
 
+MADE = (Limit,)
+"""Those that other parts of a model make."""
+
 __all__ = [
     "ALL",
+    "MADE",
     "Clamp",
     "Constraint",
     "Equation",
     "Gear",
     "Guide",
+    "Limit",
     "Link",
     "Motion",
     "Pin",

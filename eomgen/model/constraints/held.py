@@ -320,7 +320,9 @@ class Limit(Constraint):
             yield Diagnostic(
                 where, f"the limits of '{self.body}' leave nothing between {low} and {high}", "least first"
             )
-        driven = catalog.model.driven_coordinates & getattr(joint, field).names
+        given = {name for name, part in catalog.table("coordinates").items() if part is not None and part.driven}
+        given |= {part.drives() for part in catalog.table("constraints").values() if part is not None}
+        driven = given & getattr(joint, field).names
         if driven and (self.upper or limits.low is None or limits.high is None):
             what = f"'{min(driven)}' is driven: no stop can hold the joint of '{self.body}' where its motion leads on"
             yield Diagnostic(where, what, "leave out the limits, or the motion")
