@@ -8,14 +8,18 @@ the same jump by the law in numbers (complementarity) where it pushes
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from functools import partial
+from functools import cached_property, partial
 from random import Random
 from typing import Any
 
 import numpy as np
 
+from eomgen.frozen import dataclass
+from eomgen.mechanics.constraints import Row, rows_of_constraint
+from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.impacts import Hit, ImpactEquations, jump
 from eomgen.mechanics.kinematics import SystemInertia
+from eomgen.model import PointForce
 from eomgen.proof.check import Check, Tally
 from eomgen.proof.states import real_state
 from eomgen.symbolic.expression import Node, Scalar, State, jacobian
@@ -151,3 +155,108 @@ def _jumps_otherwise(found: ImpactEquations, state: State) -> str:
         wrong = np.max(np.abs(jumped - due)) > tolerances.CARRIED * (1 + np.max(np.abs(due)))
         return f"the law in numbers gives {jumped}, the formulas {due}" if wrong else ""
     raise NoValue("nothing is approached, or an impulse would pull")
+
+
+# -------- second way of the outputs ---------------------------------------------------------------------------
+# Impulses by differences: M from T of the bodies' particles, J from the rates of gaps, at speeds one larger.
+
+
+@dataclass(frozen=True)
+class Struck:
+    """The impact of one contact at a trial state.
+
+    M_kl = T(u + e_k + e_l) - T(u + e_k) - T(u + e_l) + T(u), T = sum m v^2/2 of particles; J_k the growth of a gap's
+    rate with u_k; [[M, -J^T], [J, 0]] [u+ - u; Lam] = [0; -(1 + e) v].
+    """
+
+    trial: Any
+    system: System
+    contact: str
+
+    @property
+    def rows(self) -> list[Row]:
+        """The contact's row, and those of the constraints.
+
+        Raises:
+            NoValue: other contacts touch, or a row has no gap.
+        """
+        modes = self.system.modes
+        ending = [c.name for c in self.system.scope.model.contacts if c.unilateral]
+        others = [name for name in ending if name != self.contact and (name not in modes or modes[name].closed)]
+        if self.contact not in ending or others:
+            raise NoValue("other contacts touch, or it is none")
+        found = [rows_of_constraint(self.system.motion, self.contact)[0], *self.system.constraints.closing]
+        if any(row.gap is None for row in found):
+            raise NoValue("a row has no gap")
+        return found
+
+    @cached_property
+    def _faster(self) -> list[Any]:
+        return [self.trial.faster(u.name, 1) for u in self.system.symbols.u]
+
+    @cached_property
+    def solved(self) -> tuple[np.ndarray, np.ndarray]:
+        """(u+ - u, impulses of the rows)."""
+        rows, names = self.rows, [u.name for u in self.system.symbols.u]
+        gaps = tuple(row.gap for row in rows if row.gap is not None)
+        T, T_k = self._energy(self.trial), [self._energy(at) for at in self._faster]
+        v, v_k = list(self.trial.along(gaps)[1]), [list(at.along(gaps)[1]) for at in self._faster]
+        n, k = len(names), len(rows)
+        whole, right = np.zeros((n + k, n + k)), np.zeros(n + k)
+        for i in range(n):
+            for j in range(n):
+                whole[i, j] = float(self._energy(self._faster[i].faster(names[j], 1)) - T_k[i] - T_k[j] + T)
+            for m in range(k):
+                whole[n + m, i] = float(v_k[i][m] - v[m])
+                whole[i, n + m] = -whole[n + m, i]
+        declared = self.system.scope.model.constraints[self.contact]
+        restitution = getattr(declared, "restitution", None)
+        e = 0 if restitution is None else self.trial.along((self.system.scope.value(restitution),))[0][0]
+        right[n:] = [-float((1 + e) * v[0]), *(-float(x) for x in v[1:])]
+        found = np.linalg.solve(whole, right)
+        return found[:n], found[n:]
+
+    def _energy(self, at: Any) -> Any:
+        return sum((m * (v @ v) for body in at.scene.bodies for m, _, v in at.particles(body)), start=0) / 2
+
+    def of_joint(self, body: str, axis: int) -> float:
+        """Impulse of a body's joint: the momentum that it and all that it carries gain, less the impulses on these.
+
+        Raises:
+            NoValue: it is no body with a joint.
+        """
+        links = self.system.motion.links
+        names = [link.name for link in links]
+        if body not in names:
+            raise NoValue("only of joints")
+        carried = {names.index(body)}
+        for k, link in enumerate(links):
+            carried |= {k} if link.parent in carried else set()
+        du, impulses = self.solved
+        total = 0.0
+        for name in (names[k] for k in carried):
+            before = self._momentum(self.trial, name, axis)
+            total += sum(d * (self._momentum(at, name, axis) - before) for d, at in zip(du, self._faster, strict=True))
+        for x, row in zip(impulses, self.rows, strict=True):
+            for push in row.pushes:
+                if isinstance(push, PointForce) and push.place[0] is not None and names.index(push.place[0]) in carried:
+                    force = self.system.motion.in_ground_axes(push.force, push.axes)
+                    total -= float(x) * float(self.trial.along((force[axis],))[0][0])
+        return total
+
+    def _momentum(self, at: Any, body: str, axis: int) -> float:
+        return float(sum((m * v[axis] for m, _, v in at.particles(body)), start=0))
+
+
+def struck(trial: Any, system: System, owner: str, axis: int | None = None) -> float:
+    """Impulse of a contact that closes, or of a joint in the impact of the one that can, by differences.
+
+    Raises:
+        NoValue: several can close, or a row in the impact has no gap.
+    """
+    ending = [c.name for c in system.scope.model.contacts if c.unilateral]
+    if owner in ending and axis is None:
+        return float(Struck(trial, system, owner).solved[1][0])
+    if len(ending) != 1 or axis is None:
+        raise NoValue("of constraints that hold there is no second way")
+    return Struck(trial, system, ending[0]).of_joint(owner, axis)

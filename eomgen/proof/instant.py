@@ -30,6 +30,7 @@ from eomgen.proof.check import Check, checked, differing, unchecked
 from eomgen.proof.declared_loads import acting
 from eomgen.proof.degrees_of_freedom import Nearby
 from eomgen.proof.free_bodies import drive_demanded, multipliers_demanded
+from eomgen.proof.impacts import struck
 from eomgen.proof.in_numbers import SECOND_STEP, Pushes, Way, add_push, pushes_of, way_through, with_inputs
 from eomgen.proof.states import closed_state
 from eomgen.symbolic.expression import Call, Matrix, Node, Scalar, Vector, is_zero, parse_equation, symbols_of
@@ -599,6 +600,10 @@ class NearbyStates:
         if (constraint, 1) not in found:
             raise NoValue("it shares its force with other constraints")
         return found[constraint, 1]
+
+    def struck(self, owner: str, axis: int | None = None) -> Any:
+        """Impulse by M and J of differences: T of the bodies' particles and rates of gaps, at speeds one larger."""
+        return struck(self, self.state.equations.system, owner, axis)
 
     def root(self, x: Any) -> Any:
         """Square root."""

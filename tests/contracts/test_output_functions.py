@@ -162,6 +162,30 @@ rope = { kind = "link", points = ["O", "bob.center"], length = "l" }
 kind = "gravity"
 acceleration = [0, "-g"]
 """,
+    "struck": """
+eomgen = 1
+space = "space"
+[parameters]
+l = { value = 1.5, unit = "m" }
+m = { value = 2, unit = "kg" }
+e = 0.4
+[coordinates]
+a = { start = 0.2, unit = "rad" }
+b = { start = 0.7, unit = "rad" }
+[bodies.base]
+shape = { kind = "box", mass = "m", size = ["l", "l/2", "l/3"] }
+joint = { kind = "revolute", angle = "a", axis = [0, 1, 3] }
+[bodies.arm]
+shape = { kind = "rod", mass = "m", length = "l" }
+joint = { kind = "revolute", on = "base", at = ["l/2", 0, 0], point = "start", axis = [0, 1, 0], angle = "b" }
+[constraints.floor]
+kind = "support"
+point = "arm.end"
+normal = [0, 0, 1]
+at = [0, 0, "-9*l/10"]
+unilateral = true
+restitution = "e"
+""",
     "coupled": """
 eomgen = 1
 space = "plane"
@@ -246,13 +270,14 @@ CALLS = {
     "tied": ["tension(rope)"],
     "coupled": ["multiplier(same)"],
     "stiff": ["friction(rod)"],
+    "struck": ["impulse(floor)", *(f"impulse_{axis}(arm)" for axis in "xyz"), "impulse_x(base)"],
 }
 ALONG = [f"{name}(q)" for name in "max min mean rms last time_of_max time_of_min period".split()]
 LINEAR = {"plane": ["mass(x, q)", "damping(q, q)", "stiffness(x, x)", "frequency(1)"]}
 CASES = [(model, call) for model, calls in CALLS.items() for call in calls]
 PROVEN_TWICE = [case for case in CASES if FUNCTIONS[case[1].partition("(")[0]].second is not None]
 SIZES = {"length": Fraction(2), "mass": Fraction(3), "time": Fraction(5)}
-GAPS = {"same": "m", "rod": "rad"}
+GAPS = {"same": "m", "rod": "rad", "floor": "m"}
 
 # What has no second definition of its own, and why
 CERTIFIED = {

@@ -63,6 +63,35 @@ def test_a_plain_number_is_in_the_unit_of_the_coordinate():
     assert high.bound.value_at({"pi": math.pi}) == pytest.approx(math.pi / 2) and low.bound.text == "lo"
 
 
+def test_the_impulses_of_the_stop_and_of_the_hinge_in_closed_form():
+    """m l^2/3 (1 + e) w of the stop, m (l/2) (1 + e) w across the rod of the hinge, w^2 = 3 g/l (cos lo - cos q0)."""
+    text = (
+        PENDULUM.replace('["lo", 90]', '["lo", "inf"]')
+        + """
+[outputs]
+L = { value = "impulse(rod_low)", at = "q = lo" }
+X = { value = "impulse_x(rod)", at = "q = lo" }
+Y = { value = "impulse_y(rod)", at = "q = lo" }
+"""
+    )
+    found = eomgen.solve(eomgen.loads(text))
+    w = math.sqrt(3 * G * (math.cos(0.3) - 0.5))
+    assert found["L"].value == pytest.approx(1.5 * w / 3, rel=1e-9)
+    across = 0.5 * 1.5 * w
+    assert found["X"].value == pytest.approx(across * math.cos(0.3), rel=1e-9)
+    assert found["Y"].value == pytest.approx(-across * math.sin(0.3), rel=1e-9)
+    assert found.certify().ok
+
+
+@pytest.mark.slow
+def test_many_runs_hit_the_stop_as_single_ones_do():
+    """A model made anew keeps its stops: other starts and parameters give the runs of one."""
+    model, t = eomgen.loads(PENDULUM), np.linspace(0, 1.5, 4)
+    many = eomgen.simulate_many(model, time=1.5, start={"q": [0.5, 1.0]}, samples=t)
+    for k, q in enumerate((0.5, 1.0)):
+        assert many["q"][k] == pytest.approx(eomgen.simulate(model, time=1.5, start={"q": q}, samples=t)["q"], abs=1e-9)
+
+
 CARTS = """
 eomgen = 1
 space = "plane"

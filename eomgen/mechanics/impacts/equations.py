@@ -15,11 +15,12 @@ from eomgen.errors import DerivationError, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Rank, Row, holds_identically, rows_of_constraint
 from eomgen.mechanics.dynamics import System, assembled_by_recursion, system_of
+from eomgen.mechanics.free_bodies import Reactions
 from eomgen.mechanics.kinematics import ContactMode, SystemInertia
 from eomgen.model import Contact, Model
 from eomgen.symbolic.exact import book_form, cramer
 from eomgen.symbolic.expression import Node, Scalar, ScalarRow, inner, is_zero, jacobian, over, substituted
-from eomgen.symbolic.numeric import Work
+from eomgen.symbolic.numeric import Work, transplanted
 
 OPEN = ContactMode(closed=False)
 
@@ -66,6 +67,12 @@ class ImpactEquations:
     contacts: tuple[str, ...]
     rows: tuple[ImpactRow, ...]
     after: tuple[Node, ...]
+
+    @property
+    def touching(self) -> tuple[str, ...]:
+        """The contacts that take part."""
+        own = {row.row.constraint for row in self.rows}
+        return tuple(name for name in self.system.modes if name in own)
 
     @cached_property
     def M(self) -> tuple[ScalarRow, ...]:
@@ -133,6 +140,36 @@ class ImpactEquations:
             if row.e is not None:  # v+ + v- = (1 - e) v-
                 lost = lost - self.solution[row.impulse] * (1 - row.e) * inner(row.J, self.u)
         return book_form(over(lost, 2), Work.ANSWER)
+
+    def impulse_along(self, owner: str, axis: int) -> Scalar:
+        """Impulse of a joint or constraint along an axis of the ground, on its child.
+
+        The balance of the bodies is linear in accelerations and multipliers: the part of a reaction that they make,
+        with the jump of the speeds and the impulses in their place.
+
+        Raises:
+            DerivationError: with the contacts closed the model has other speeds; there is no such reaction.
+        """
+        away = {name: mode for name, mode in self.system.modes.items() if name not in self.touching}
+        closed = system_of(self.system.scope.model, away)
+        symbols = closed.symbols
+        if [x.name for x in symbols.u] != [x.name for x in self.u]:
+            what = f"the impulse of '{owner}' does not follow: with {', '.join(self.contacts)} closed the speeds are others"
+            raise DerivationError(what, fix="coordinates that are free of the contact")
+        reaction = Reactions.of(closed).component("force", axis, owner)
+        still: dict[Node, Scalar] = dict.fromkeys((*symbols.a, *symbols.lam), 0)
+        values: dict[str, Scalar] = {x.name: x for x in symbols.x} | {"t": symbols.t}
+        values |= {name: node for name, node in symbols.parameters.items()}
+        known = transplanted(tuple(self.solution.values()), symbols.t.graph, values)
+        solution = dict(zip(self.solution, known, strict=True))
+        moved: dict[Node, Scalar] = {}
+        for a, u, later in zip(symbols.a, symbols.u, self.after, strict=True):
+            moved[a] = solution[later] - u
+        by_row = {(row.row.constraint, row.row.number): solution[row.impulse] for row in self.rows}
+        for lam, row in zip(symbols.lam, closed.constraints.closing, strict=True):
+            moved[lam] = by_row.get((row.constraint, row.number), 0)
+        struck, resting = (substituted((reaction,), known)[0] for known in (moved, still))
+        return book_form(struck - resting, Work.ANSWER)
 
     @property
     def _is_driven(self) -> bool:

@@ -12,6 +12,7 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies import DrivingForces, Indeterminate, Reactions, refuse_placeless
+from eomgen.mechanics.impacts import impact_equations
 from eomgen.mechanics.instant.kinematic_state import Composition, body_axes, composition_of
 from eomgen.mechanics.instant.motion_kind import finite_center
 from eomgen.mechanics.kinematics import (
@@ -47,7 +48,7 @@ from eomgen.symbolic.expression import (
     substituted,
     tangent,
 )
-from eomgen.symbolic.numeric import Work
+from eomgen.symbolic.numeric import Work, transplanted
 
 # -------- outputs ---------------------------------------------------------------------------------------------
 # System -> Quantities: what output functions ask of it, as graph scalars.
@@ -315,6 +316,27 @@ class Quantities:
         except DerivationError:
             return True
         return False
+
+    def impulse(self, owner: str, along: int | None = None) -> Scalar:
+        """Impulse of a contact that closes in this state, or of what holds in that impact; along an axis of the ground.
+
+        Raises:
+            DerivationError: several contacts can close, and none is named; the coordinates of the impact are others.
+        """
+        model, modes = self.system.scope.model, self.system.modes
+        ending = [contact.name for contact in model.contacts if contact.unilateral]
+        if owner not in ending and len(ending) != 1:
+            what = f"impulse of '{owner}': {', '.join(ending) or 'no contact'} can close"
+            raise DerivationError(what, fix="ask impulse(CONTACT), or leave one contact that can")
+        contact = owner if owner in ending else ending[0]
+        standing = [name for name in ending if name not in modes or modes[name].closed]
+        found = impact_equations(model, (contact,), [name for name in standing if name != contact])
+        value = found.impulse_along(owner, along) if along is not None else found.impulses.get(owner)
+        if value is None:
+            raise DerivationError(f"'{owner}' has no impulse of its own", fix=f"one of {', '.join(found.impulses)}")
+        symbols = self.system.symbols
+        meanings: dict[str, Scalar] = {x.name: x for x in (*symbols.x, *symbols.parameters.values(), symbols.t)}
+        return transplanted((value,), symbols.t.graph, meanings)[0]
 
     def drive(self, coordinate: str) -> Scalar:
         """Force or moment of the drive that moves a driven coordinate as given."""

@@ -109,6 +109,7 @@ class OutputContext(Protocol):
     def is_truss(self, name: str) -> bool: ...
     def multiplier(self, constraint: str) -> Scalar: ...
     def drive(self, coordinate: str) -> Scalar: ...
+    def impulse(self, owner: str, along: int | None = None) -> Scalar: ...
     def section(self, body: str) -> Section: ...
 
 
@@ -165,6 +166,14 @@ class Trial(Protocol):
 
         Raises:
             NoValue: it shares its force with others; there is friction.
+        """
+
+    def struck(self, owner: str, axis: int | None = None) -> Any:
+        """Impulse of a contact that closes, along an axis of a joint, by the energy of the bodies and the rates of
+        gaps at several speeds.
+
+        Raises:
+            NoValue: a row in it has no gap.
         """
 
     def faster(self, speed: str, by: float) -> Trial:

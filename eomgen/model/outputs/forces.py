@@ -142,6 +142,28 @@ DRIVE = OutputFunction(
     second=lambda trial, call: trial.demanded(call.name_at(0)),
     source=OutputSource.BALANCE,
 )
+IMPULSE = OutputFunction(
+    names=("impulse",),
+    kinds=("constraint",),
+    least=1,
+    unit="J*s",
+    per=(0,),
+    gives="of a contact, if it closes at that state; of a constraint in the impact of the one contact that can close",
+    value=lambda scene, call: scene.impulse(call.name_at(0)),
+    second=lambda trial, call: trial.struck(call.name_at(0)),
+    moves=True,
+)
+IMPULSE_OF_FORCES = OutputFunction(
+    names=along("impulse_*"),
+    kinds=("reaction",),
+    least=1,
+    shown="(constraint or body)",
+    unit="N*s",
+    gives="of a joint or constraint, ground axes, on its child, in the impact of the one contact that can close",
+    value=lambda scene, call: scene.impulse(call.name_at(0), component(call)),
+    second=lambda trial, call: trial.struck(call.name_at(0), component(call)),
+    moves=True,
+)
 PULL = OutputFunction(
     names=("pull",),
     kinds=("force between points",),
