@@ -154,7 +154,7 @@ class ImpactEquations:
         closed = system_of(self.system.scope.model, away)
         symbols = closed.symbols
         if [x.name for x in symbols.u] != [x.name for x in self.u]:
-            what = f"the impulse of '{owner}' does not follow: with {', '.join(self.contacts)} closed the speeds are others"
+            what = f"the impulse of '{owner}' does not follow: in contact the model has other speeds"
             raise DerivationError(what, fix="coordinates that are free of the contact")
         reaction = Reactions.of(closed).component("force", axis, owner)
         still: dict[Node, Scalar] = dict.fromkeys((*symbols.a, *symbols.lam), 0)
