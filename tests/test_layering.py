@@ -264,7 +264,7 @@ DOORS = {  # rooms that are imported through what their stub names, and how many
     "mechanics.instant": 18,
     "mechanics.equilibrium": 15,
     "mechanics.linearization": 15,
-    "symbolic.expression": 82,
+    "symbolic.expression": 83,
     "symbolic.numeric": 46,
     "symbolic.print": 29,
     "symbolic.exact": 49,
@@ -374,7 +374,7 @@ def house():
 
 def test_a_newcomer_has_no_more_to_know_than_was_reached(house):
     """Modules outside the seams, lines of the longest, modules of one importer, names of lower rooms used elsewhere."""
-    assert len(house.chapters) <= 362
+    assert len(house.chapters) <= 363
     assert max(m.lines for m in house.modules.values()) <= 700
     assert len(house.private) <= 59
     assert len(house.taken_from(("symbolic", "model", "mechanics", "codegen", "simulation"))) <= 607

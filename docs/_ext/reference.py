@@ -71,6 +71,7 @@ from eomgen.model.parts import (  # noqa: E402
 )
 from eomgen.model.quantities import UNITS  # noqa: E402
 from eomgen.model.sampled_laws import TimeLawRule  # noqa: E402
+from eomgen.model.value_tables import NumbersRow, ValueTable  # noqa: E402
 from eomgen.symbolic.expression.formula import NAMES  # noqa: E402
 
 PLACE = ROOT / "docs" / "reference"
@@ -91,6 +92,7 @@ TABLES: Mapping[str, type[Any]] = {
     "coordinates": Coordinate,
     "speeds": Speed,
     "states": StateVariable,
+    "tables": ValueTable,
     "inputs": Input,
     "bodies": Body,
     "pieces": Piece,
@@ -136,6 +138,11 @@ def value_of(rule: Any) -> str:
 @value_of.register
 def _(rule: RepetitionRule) -> str:
     return 'INDEX = 20 (from 1), [first, last], or "n" (an integer parameter)'
+
+
+@value_of.register
+def _(rule: NumbersRow) -> str:
+    return "a list of numbers"
 
 
 @value_of.register

@@ -247,12 +247,14 @@ def _samples(sampled: Sampled, name: str) -> tuple[tuple[Table, ...], Function]:
     """The tables of a function through samples, and it."""
     spline, scale = sampled.spline, math.pi**sampled.pi_power
     columns = list(zip(*spline.pieces, strict=True))
-    values = [float(c) * scale for column in reversed(columns) for c in column]
-    bounds, steps = list(map(float, spline.bounds)), [2**k for k in reversed(range(len(spline.bounds).bit_length()))]
+    measure = float(sampled.measured(1.0, math.pi, float))
+    values = [float(c) * measure**k * scale for k, column in reversed([*enumerate(columns)]) for c in column]
+    bounds = list(sampled.ends(math.pi, float))
+    steps = [2**k for k in reversed(range(len(spline.bounds).bit_length()))]
     tables = (
         Table(f"{name}_steps", steps),
         Table(f"{name}_bounds", bounds, READ, sampled.name),
-        Table(f"{name}_v", [*values, *map(float, spline.origins)], READ),
+        Table(f"{name}_v", [*values, *(float(x) / measure for x in spline.origins)], READ),
     )
     sizes = [str(size) for size in (len(bounds), int(spline.closed), len(steps), len(columns) - 1)]
     given = ", ".join(["t", sizes[0], sizes[1], tables[0].name, sizes[2], tables[1].name, sizes[3], tables[2].name])

@@ -181,6 +181,7 @@ def _gap_name(row: Row) -> Name:
 PARAMETERS = ("parameter", "meaning", "unit", "value")
 COORDINATES = ("coordinate", "meaning", "unit", "start")
 Quantified = Parameter | Coordinate | StateVariable | Input | None
+MOST_VALUES = 8  # of a table, that are printed
 INPUTS = ("input", "meaning", "unit", "value")
 
 
@@ -231,7 +232,20 @@ def data_tables(model: Model, symbols: Mapping[str, Node]) -> tuple[Statement, .
     )
     if inputs:
         statements.append(Table(INPUTS, inputs))
+    statements += [prose(_said_of_table(name, part)) for name, part in model.tables.items()]
     return tuple(statements)
+
+
+WAYS = {"pchip": "monotone cubics", "linear": "straight lines", "cubic": "a cubic spline"}
+
+
+def _said_of_table(name: str, table: Any) -> str:
+    """A table in words: what it goes through, and how."""
+    unit, at_unit = (f" {x}" if x is not None and x.text else "" for x in (table.unit, table.at_unit))
+    places, values = (", ".join(f"{float(x):g}" for x in row[:MOST_VALUES]) for row in (table.at, table.values))
+    more = ", ..." if len(table.at) > MOST_VALUES else ""
+    way = WAYS[table.between]
+    return f"{name} is, at {places}{more}{at_unit}: {values}{more}{unit}; between them {way}."
 
 
 def open_at_rest(system: System) -> list[Statement]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 import unicodedata
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import field
 from functools import cached_property, reduce
 from typing import Any
 
@@ -313,10 +314,12 @@ class SetLetters:
     Args:
         bare: the LaTeX of each symbol by its name without primes.
         names: all symbols, with primes.
+        tables: the LaTeX of each table of values by its name.
     """
 
     bare: Mapping[str, str]
     names: tuple[str, ...]
+    tables: Mapping[str, str] = field(default_factory=dict)
 
     @cached_property
     def _known(self) -> dict[tuple[Tokens, int], list[str]]:
@@ -339,6 +342,18 @@ class SetLetters:
     def alike(self) -> list[str]:
         """Names of symbols that look the same in print."""
         return [" and ".join(names) for names in self._known.values() if len(names) > 1]
+
+    def table_at(self, tokens: Tokens, k: int) -> tuple[str, int]:
+        """(name, with primes, where its argument begins) of a table that begins at a place; ("", k) of none."""
+        for name, tex in self.tables.items():
+            own = tokens_of(tex)
+            end = k + len(own)
+            if tokens[k:end] == own:
+                while tokens[end : end + 1] == ("'",):
+                    name, end = f"{name}'", end + 1
+                if "(" in tokens[end : end + 2]:
+                    return name, end
+        return "", k
 
     def at(self, tokens: Tokens, k: int) -> tuple[str, int]:
         """(name, where it ends) of the longest symbol that begins at a place; ("", k) where none does."""
@@ -444,6 +459,11 @@ class TypesetReading:
 
     def _atom(self) -> Tree:
         token = self._next()
+        table, begun = self.letters.table_at(self.tokens, self.k)
+        if table:
+            self.k = begun
+            self._take("(")
+            return ("table", table, *self._arguments())
         name, end = self.letters.at(self.tokens, self.k)
         if token == "e" and self._is_exponential(name, end):
             self.k += 2
@@ -593,6 +613,10 @@ def tree_value(tree: Tree, values: Mapping[str, Any], arithmetic: Arithmetic) ->
     if op == "select":
         condition, if_true, if_false = parts
         return tree_value(if_true if tree_value(condition, values, arithmetic) else if_false, values, arithmetic)
+    if op == "table":
+        name, argument = parts
+        x = tree_value(argument, values, arithmetic)
+        return values[f"{name}("].function.at(x, arithmetic.number, arithmetic.functions["pi"]())
     known = [tree_value(part, values, arithmetic) for part in parts]
     if op == "sum":
         return sum(known[1:], start=known[0])

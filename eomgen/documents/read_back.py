@@ -61,7 +61,7 @@ from eomgen.documents.statements import (
 from eomgen.errors import ExpressionError
 from eomgen.frozen import dataclass
 from eomgen.proof import Check, checked, differing, unchecked
-from eomgen.symbolic.expression import LONGEST, Graph, Node, Scalar, order, parse, sampled_of
+from eomgen.symbolic.expression import LONGEST, Graph, Node, Scalar, TableFunction, order, parse, sampled_of
 from eomgen.symbolic.numeric import READ_BACK, NoValue, evaluate, fifty_digits, tolerances
 from eomgen.symbolic.print import Notation
 
@@ -197,7 +197,9 @@ class PageComparison:
     def letters(self) -> SetLetters:
         """The letters of the document, as it declares them."""
         names = _names_in(self.document)
-        letters = SetLetters({(bare := name.rstrip("'")): self.notation.latex(bare) for name in names}, tuple(names))
+        bare = {(bare := name.rstrip("'")): self.notation.latex(bare) for name in names}
+        tables = {name: self.notation.latex(name) for name in self.tables if "'" not in name}
+        letters = SetLetters(bare, tuple(names), tables)
         if letters.alike:
             raise Unlike(f"these names look alike: {letters.alike[0]}")
         if wrong := misspelt(letters.bare, self.document.notation):
@@ -208,7 +210,13 @@ class PageComparison:
     def leaning_letters(self) -> SetLetters:
         """The same where it is not said which letters stand upright."""
         bare = {name: " ".join(_leaning(tokens_of(tex))) for name, tex in self.letters.bare.items()}
-        return SetLetters(bare, self.letters.names)
+        tables = {name: " ".join(_leaning(tokens_of(tex))) for name, tex in self.letters.tables.items()}
+        return SetLetters(bare, self.letters.names, tables)
+
+    @cached_property
+    def tables(self) -> dict[str, TableFunction]:
+        """The tables of values that its formulas call, with primes where one is differentiated."""
+        return _tables_in(self.document)
 
     def checks(self, wanted: Sequence[Wanted], blocks: Sequence[PageBlock]) -> Iterator[Check]:
         """Checks that each block of the page is the required one; with unmade checks of what could not be read."""
@@ -370,7 +378,7 @@ class PageComparison:
             self.left.setdefault("too long to be read back", []).append(where)
             return
         graph = Graph()
-        expression = parse(text, longest=len(text))
+        expression = parse(text, longest=len(text), tables=self.tables)
         symbols = {name: graph.symbol(name) for kind, name in expression.code if kind == "name"}
         self.values.append((where, self._tree(tokens, where), expression.evaluate(symbols | {"pi": graph.pi})))
 
@@ -458,7 +466,7 @@ class PageComparison:
         todo = self.values
         for _ in range(TRIES):
             state = {name: arithmetic.number(random.randint(1, 997)) / 499 for name in sorted(names)}
-            todo = list(_valueless(todo, state))
+            todo = list(_valueless(todo, state | {f"{name}(": table for name, table in self.tables.items()}))
             if not todo:
                 return
         self.left.setdefault("at none of the states tried it has a value", []).extend(where for where, *_ in todo)
@@ -507,7 +515,7 @@ def _leaf_nodes(scalars: Iterable[Scalar]) -> Iterator[tuple[str, Node]]:
     for x in order(tuple(scalars)):
         if x.op == "symbol":
             yield x.name, x
-        elif x.op == "sampled":
+        elif x.op == "sampled" and not sampled_of(x.args[1]).called:
             yield sampled_of(x.args[1]).name, x
 
 
@@ -522,11 +530,33 @@ def _names_in(document: Document) -> list[str]:
         if isinstance(statement, Listing):
             for row in statement.rows:
                 if row.quantity.exact is not None:
-                    code = parse(row.quantity.exact, longest=len(row.quantity.exact)).code
+                    exact = row.quantity.exact
+                    code = parse(exact, longest=len(exact), tables=_tables_in(document)).code
                     found |= {name: None for kind, name in code if kind == "name" and name != "pi"}
         for part in parts_of(statement):
             found |= dict.fromkeys(_names_of(part))
     return list(found)
+
+
+def _tables_in(document: Document) -> dict[str, TableFunction]:
+    """The tables of values that the formulas of a document call, and their derivatives, by name."""
+    found: dict[str, TableFunction] = {}
+    statements = (statement for step in document.steps for statement in step.statements)
+    parts: list[Any] = [part for statement in statements for part in parts_of(statement)]
+    while parts:
+        part = parts.pop()
+        if isinstance(part, Node):
+            called = (sampled_of(x.args[1]) for x in order((part,)) if x.op == "sampled")
+            found |= {sampled.name: TableFunction(sampled) for sampled in called if sampled.called}
+        elif isinstance(part, (Name, Partial, Rate)):
+            parts.append(part.of if isinstance(part, (Partial, Rate)) else part.by)
+        elif isinstance(part, Matrix):
+            parts += [entry for row in part.rows for entry in row]
+    plain = {name.rstrip("'"): table for name, table in found.items() if "'" not in name}
+    for name, table in plain.items():
+        found.setdefault(f"{name}'", table.rate)
+        found.setdefault(f"{name}''", table.rate.rate)
+    return found
 
 
 def _names_of(part: Any) -> list[str]:

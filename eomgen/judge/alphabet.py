@@ -34,12 +34,14 @@ class Vocabulary:
         functions: that can be requested of it: speed, T, Q.
         set_as: how names are set in LaTeX, by name.
         derived: names of quantities as derivations set them, {LaTeX: name}; they stand with their whole index alone.
+        tables: functions of any formula that the model declares.
     """
 
     names: frozenset[str]
     functions: frozenset[str]
     set_as: Mapping[str, str]
     derived: Mapping[str, str]
+    tables: frozenset[str] = frozenset()
 
     @cached_property
     def _by_key(self) -> dict[str, str]:
@@ -124,8 +126,10 @@ def vocabulary(
     functions: Iterable[str],
     set_as: Mapping[str, str],
     derived: Mapping[str, str] | None = None,
+    tables: Iterable[str] = (),
 ) -> Vocabulary:
     """Names without their primes, functions, how names are set, and how derivations set their quantities."""
     derived = derived or {}
     bare = frozenset(name.rstrip("'") for name in (*names, *derived.values()))
-    return Vocabulary(bare, frozenset(functions), set_as, {x: name.rstrip("'") for x, name in derived.items()})
+    set_derived = {x: name.rstrip("'") for x, name in derived.items()}
+    return Vocabulary(bare, frozenset((*functions, *tables)), set_as, set_derived, frozenset(tables))

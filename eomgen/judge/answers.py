@@ -181,7 +181,7 @@ def _answered(case: Case, written: HandEquation, kind: str, at: Instant) -> Verd
 def of_unknown(case: Case, written: HandEquation, kind: str, unknown: Sequence[str]) -> Verdict:
     """The verdict where names mean nothing: it is undecided."""
     names = ", ".join(f"'{name}'" for name in unknown)
-    known = ", ".join(name for name in case.system.scope.names if "'" not in name and name not in ("t", "pi"))
+    known = ", ".join(name for name in case.system.scope.names if not {"'", "("} & {*name} and name not in ("t", "pi"))
     reason = f"unknown {'name' if len(unknown) == 1 else 'names'} {names}; the model has {known}"
     return Verdict(written.given, kind, UNDECIDED, reason=reason, unknown=tuple(unknown))
 

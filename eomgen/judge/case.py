@@ -178,7 +178,7 @@ class Case:
         if type(x) is not Node or x.graph is self.system.scope.graph:
             return x
         text = to_text(x)
-        return parse(text, longest=len(text) + 1).evaluate(self.system.scope.names)
+        return parse(text, longest=len(text) + 1, tables=self.model.functions).evaluate(self.system.scope.names)
 
     @cached_property
     def parts(self) -> Contributions:
@@ -447,7 +447,8 @@ class Case:
         if answer.exact is None:
             return None
         try:
-            return parse(answer.exact, longest=len(answer.exact) + 1).evaluate(self.system.scope.names)
+            read = parse(answer.exact, longest=len(answer.exact) + 1, tables=self.model.functions)
+            return read.evaluate(self.system.scope.names)
         except ExpressionError:
             return None
 

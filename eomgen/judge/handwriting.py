@@ -54,6 +54,7 @@ _WHOLE = re.compile(r"\s*(?:\\(?:left|[bB]igg?l?)\s*)?[(\[{]|\s*\\left\s*\\lbrac
 _UNIT = re.compile(r"\s*([A-Za-zµ]+)(?![\w(])")
 _INDEX_GROUP = re.compile(r"\{([^{}]*)\}")
 _OF_TIME = re.compile(r"\s*\{?\s*(?:\\left)?\s*\(\s*t\s*(?:\\right)?\s*\)\s*\}?")
+_OPENED = re.compile(r"\s*(?:\\left\s*)?\(")
 _REFERENCES = re.compile(r"\(\s*[\w.]+(?:\s*[,-]\s*[\w.]+)*\s*\)")
 _ORNAMENT = re.compile(
     r"\$\$?|\\\[|\\\]|\\\(|\\\)|\\(?:begin|end)\s*\{(?:equation|align|aligned|gather|split)\*?\}|(?<!\\)&|\\\\\s*$"
@@ -512,10 +513,7 @@ class _Reader:
             self.at = arguments.end()
             self.put(found + re.sub(r"\s", "", arguments.group()), "call", start)
             return
-        of_time = _OF_TIME.match(self.text, self.at)
-        if of_time and (found in self.known.names or found not in self.known.functions):
-            self.at = of_time.end()
-        self.put(found + "'" * dots, "name", start)
+        self.put_name(found, dots, start)
 
     def dots(self) -> int:
         """Number of dots and primes here."""
@@ -602,9 +600,9 @@ class _Reader:
             return
         of_time = _OF_TIME.match(self.text, found.end()) and self.known.known(bare)
         if bare == word and behind.startswith("(") and not of_time and not self._is_product(word, found.end()):
-            if word in _FUNCTIONS:
+            if word in _FUNCTIONS or word in self.known.tables:
                 self.at = found.end()
-                self.put(_FUNCTIONS[word], "function", start)
+                self.put(_FUNCTIONS.get(word, word), "function", start)
                 self.skip_space()
                 self.parenthesis()
                 return
@@ -639,7 +637,7 @@ class _Reader:
 
     def _is_product(self, word: str, end: int) -> bool:
         """True if parentheses behind a name are a factor: l(1 - cos(theta)), where l is a length."""
-        if word in _FUNCTIONS:
+        if word in _FUNCTIONS or word in self.known.tables:
             return False
         return not (word in self.known.functions and _REFERENCES.match(self.text, end))
 
@@ -677,6 +675,14 @@ class _Reader:
         index = index or self.index()
         if index:
             name = self.known.indexed(name, index) or name + (index if index[0].isdigit() else f"_{index}")
+        self.put_name(name, dots, start)
+
+    def put_name(self, name: str, dots: int, start: int) -> None:
+        """A name with its dots; x(t) of time is x, a table of the model stands before its argument, M(n)."""
+        if name in self.known.tables and _OPENED.match(self.text, self.at):
+            self.put(name + "'" * dots, "function", start)
+            self.parenthesis()
+            return
         of_time = _OF_TIME.match(self.text, self.at)
         if of_time and (name in self.known.names or name not in self.known.functions):
             self.at = of_time.end()

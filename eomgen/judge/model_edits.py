@@ -287,7 +287,7 @@ def _standing(q: Coordinate) -> Coordinate:
 
 def _formula(x: Scalar) -> Expression:
     text = to_text(x) if type(x) is Node else str(x)
-    return parse(text, longest=len(text) + 1)
+    return parse(text, longest=len(text) + 1, references=True)
 
 
 def _with_leaf(part: Any, path: Sequence[Any], value: Any) -> Any:

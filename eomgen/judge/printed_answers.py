@@ -111,7 +111,7 @@ class SmallMatrices:
             return x if not isinstance(x, float) else Fraction(x)
         text = to_text(x)
         names = {**self.case.system.scope.names, self._variable.name: self.s}
-        return parse(text, longest=len(text) + 1).evaluate(names)
+        return parse(text, longest=len(text) + 1, tables=self.case.model.functions).evaluate(names)
 
     def characteristic(self, *, circular: bool = False) -> Scalar | None:
         """det(s^2 M + s C + K) of s; of a frequency, s = i s', where no odd power is in it. None: it is not known."""

@@ -244,12 +244,14 @@ class Reading:
     @cached_property
     def vocabulary(self) -> Vocabulary:
         """Names, functions, and how names are set in LaTeX."""
-        names = [*self.system.scope.names, *self.letters, *self.system.scope.model.outputs]
+        own_names = [name for name in self.system.scope.names if "(" not in name]  # M( is a table
+        names = [*own_names, *self.letters, *self.system.scope.model.outputs]
         notation = notation_of(self.system.scope.model)
-        own = [name for name in self.system.scope.names if "'" not in name]
-        letters = [letter for letter in LETTERS if letter not in self.system.scope.names]
+        own = [name for name in own_names if "'" not in name]
+        letters = [letter for letter in LETTERS if letter not in (*own_names, *self.system.scope.model.tables)]
         set_as = {name: notation.latex(name) for name in own}
-        return vocabulary(names, (*FUNCTIONS, *letters, MULTIPLIER), set_as, self.derived.typeset)
+        tables = self.system.scope.model.tables
+        return vocabulary(names, (*FUNCTIONS, *letters, MULTIPLIER), set_as, self.derived.typeset, tables)
 
     @cached_property
     def derived(self) -> DerivedNames:
@@ -279,7 +281,8 @@ class Reading:
         """Names that stand for formulas, the first that says so: outputs of the file and their symbols, symbols of
         reactions, T, V, L, letters of reactions and inertias, B_x, J_O.
         """
-        model, own = self.system.scope.model, self.system.scope.names
+        model = self.system.scope.model
+        own = {*self.system.scope.names, *model.tables}
         found = {name: output.value for name, output in model.outputs.items() if output.at is None and not output.from_}
         for name, symbol in ((name, model.outputs[name].symbol) for name in tuple(found)):
             if symbol is not None:
@@ -548,7 +551,7 @@ class Reading:
                 code.append(("call", replace(what, args=args)))
             elif kind == "call" and what.name == SLOPE:
                 code.append(("call", replace(what, args=(self._energy(what.args[0]), _formula(what.args[1])))))
-            elif kind == "call" and what.name in LETTERS:
+            elif kind == "call" and what.name in LETTERS and what.name not in self.system.scope.model.tables:
                 code.append(("call", replace(what, name=LETTERS[what.name])))
             else:
                 code.append((kind, what))

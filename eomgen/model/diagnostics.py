@@ -87,6 +87,7 @@ TABLES = {
     "coordinates": "coordinate",
     "speeds": "speed",
     "states": "state",
+    "tables": "table",
     "inputs": "input",
     "points": "point",
     "bodies": "body",

@@ -16,7 +16,7 @@ from typing import Any
 from eomgen.errors import ExpressionError
 from eomgen.frozen import dataclass
 from eomgen.model.quantities import Unit
-from eomgen.symbolic.expression import Call, Expression, Fraction, is_exact, token_at
+from eomgen.symbolic.expression import Call, Expression, Fraction, Sampled, is_exact, token_at
 
 BASE = ("kg", "m", "s", "A", "K")
 LARGEST_COEFFICIENT = 12  # of a number that textbooks write before parameters: 1/2 k x^2, 4/3 r, m l^2/12
@@ -279,7 +279,7 @@ class Walk:
         elif kind == "neg":
             stack[-1] = replace(stack[-1], last=k)
         elif kind == "sampled":
-            stack[-1] = Term(self.inference.unknown(), stack[-1].first, k)
+            stack[-1] = Term(self._of_samples(what, stack[-1], k), stack[-1].first, k)
         elif kind == "function":
             name, number = what
             stack[-number:] = [self._function(name, stack[-number:], k)]
@@ -320,6 +320,13 @@ class Walk:
         if moving and not self.inference.equal(self._finished(a).dimension, NUMBER):
             self._clash(a, NUMBER, function="a power")
         return Term(NUMBER if moving else self.inference.unknown(), a.first, k, a.names | b.names)
+
+    def _of_samples(self, sampled: Sampled, argument: Term, k: int) -> Dimension:
+        """The dimension of a table's value; of a function of time nothing is known here."""
+        at, unit = (dimension_of_unit(Unit.parse(text)) if text else None for text in sampled.units)
+        if at is not None and not self.inference.equal(self._finished(argument).dimension, at):
+            self._clash(argument, at, function=sampled.name)
+        return self.inference.unknown() if unit is None else unit
 
     def _function(self, name: str, args: list[Term], k: int) -> Term:
         first, args = args[0].first, [self._finished(a) for a in args]

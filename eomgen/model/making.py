@@ -18,6 +18,7 @@ from eomgen.model.outputs.base import AXES, DRY_JOINT, SIDES
 from eomgen.model.part import Part, read_part
 from eomgen.model.positions import DocumentPath
 from eomgen.model.typed import Typing, typing_of
+from eomgen.model.value_tables import TABLES, functions_of, with_functions
 from eomgen.symbolic.expression import NAMES, Call, Expression, Reference, parse, rate_of_call
 
 # -------- all checks -------------------------------------------------------------------------------------------
@@ -45,6 +46,8 @@ def _calls_in(expression: Expression) -> Iterator[Call]:
 
 
 def _call(catalog: Catalog, leaf: Leaf, call: Call) -> Iterator[Diagnostic]:
+    if call.name.rstrip("'") in catalog.table("tables"):
+        return
     function = FUNCTIONS.get(call.name)
     if function is None:
         there = [name for name in FUNCTIONS if catalog.model.space != "plane" or name[-1] != "z" or name == "omega_z"]
@@ -294,6 +297,8 @@ Made = TypeVar("Made", bound=Part)
 
 def draft_of(cls: Any, raw: Mapping[str, Any], title: str, found: list[Diagnostic]) -> Any:
     """A model from the tables of a file, unchecked; what could not be read is None and has a diagnostic."""
+    if TABLES in raw:
+        raw = with_functions(raw, functions_of(raw[TABLES], found), found)
     draft = read_part(cls, {"name": title, **raw}, (), found, known=("eomgen",))
     seated = draft.altered(bodies=_seated(draft))
     limited = with_limits(seated)
@@ -359,9 +364,11 @@ def finish(model: Any) -> None:
         ModelError: every problem at once, by path ("bodies.arm.joint.on").
     """
     found: list[Diagnostic] = []
+    functions = functions_of({} if model.tables is None else model.tables, found)
     for slot in type(model).slots():
         raw = getattr(model, slot.name)
         if raw is not slot.default:
+            raw = with_functions({slot.name: raw}, functions, found)[slot.name] if functions else raw
             object.__setattr__(model, slot.name, slot.rule.read(raw, (slot.key,), found))
     object.__setattr__(model, "bodies", _seated(model))
     object.__setattr__(model, "constraints", Table(with_limits(model)))

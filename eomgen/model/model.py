@@ -51,8 +51,9 @@ from eomgen.model.positions import DocumentPath
 from eomgen.model.sampled_laws import given_samples, left_tables
 from eomgen.model.trusses import in_parts
 from eomgen.model.units import UnitsOfNames
+from eomgen.model.value_tables import ValueTable
 from eomgen.model.values import Numbers
-from eomgen.symbolic.expression import DeclaredSamples, Expression, Sampled
+from eomgen.symbolic.expression import DeclaredSamples, Expression, Sampled, TableFunction
 
 REQUESTED = ("given", "outputs", "unknowns")
 """Tables in which an unknown is no load: its declaration, requested results, the kinematics of an instant."""
@@ -88,6 +89,7 @@ class Model(Numbers, Connections, UnitsOfNames, Part):
         parameters: constants.
         coordinates: what moves.
         speeds: generalized speeds that are not rates.
+        tables: functions of any variable through values, M(n) in expressions.
         states: of first order, z' = rate: currents, pressures, temperatures.
         inputs: known functions of time that a caller may replace.
         points: of the ground, fixed [m].
@@ -117,6 +119,7 @@ class Model(Numbers, Connections, UnitsOfNames, Part):
     parameters: Annotated[Table[Parameter], _table(Parameter, "parameter")] = Table()
     coordinates: Annotated[Table[Coordinate], _table(Coordinate, "coordinate")] = Table()
     speeds: Annotated[Table[Speed], _table(Speed, "speed")] = Table()
+    tables: Annotated[Table[ValueTable], _table(ValueTable, "table")] = Table()
     states: Annotated[Table[StateVariable], _table(StateVariable, "state")] = Table()
     inputs: Annotated[Table[Input], _table(Input, "input")] = Table()
     points: GroundPoints = Table()
@@ -174,6 +177,14 @@ class Model(Numbers, Connections, UnitsOfNames, Part):
             ModelError: one of them is wrong.
         """
         return replace(self, outputs=Table(outputs), text=None, questions=None)
+
+    @property
+    def functions(self) -> dict[str, TableFunction]:
+        """The functions that tables declare, and their derivatives: M, M', M''."""
+        found = {name: table.function(name) for name, table in self.tables.items()}
+        for name, table in tuple(found.items()):
+            found |= {f"{name}'": table.rate, f"{name}''": table.rate.rate}
+        return found
 
     @property
     def counts(self) -> tuple[str, ...]:

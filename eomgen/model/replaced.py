@@ -517,7 +517,7 @@ def requested_of(model: Model, text: str) -> Output:
     formula, at, condition = text.partition(" at ")
     condition, comma, event = condition.partition(", event")
     try:
-        output = Output(value=parse(_in_full(model, formula.strip()), references=True))
+        output = Output(value=parse(_in_full(model, formula.strip()), references=True, tables=model.functions))
         if at:
             when: Any = AtRest() if condition.strip() == AtRest.text else equation_in(model, condition.strip())
             output = replace(output, at=when)

@@ -137,7 +137,7 @@ def _pairs(raw: Any, path: DocumentPath, found: list[Diagnostic]) -> list[tuple[
         if not isinstance(pair, (list, tuple)) or len(pair) != 2:
             found.append(Diagnostic((*path, i), f"a time and a value are needed here, not {shown(pair)}", EXAMPLE))
             return None
-        time, value = (_number(x, (*path, i, j), found) for j, x in enumerate(pair))
+        time, value = (number_given(x, (*path, i, j), found) for j, x in enumerate(pair))
         if time is None or value is None:
             return None
         if pairs and time <= pairs[-1][0]:
@@ -148,7 +148,8 @@ def _pairs(raw: Any, path: DocumentPath, found: list[Diagnostic]) -> list[tuple[
     return pairs
 
 
-def _number(raw: Any, path: DocumentPath, found: list[Diagnostic]) -> Fraction | None:
+def number_given(raw: Any, path: DocumentPath, found: list[Diagnostic]) -> Fraction | None:
+    """A plain number as it is written, exactly; None, and a diagnostic, of what is none."""
     value: Any = None
     try:
         value = None if isinstance(raw, bool) else as_expression(raw).evaluate({})

@@ -266,7 +266,7 @@ def read_back(system: System, text: str) -> Scalar:
     def none(call: Call) -> Scalar:
         raise DerivationError(f"'{call}' stands in the text")
 
-    found: Scalar = parse(text).evaluate(system.scope.names, none)
+    found: Scalar = parse(text, tables=system.scope.model.functions).evaluate(system.scope.names, none)
     return found
 
 

@@ -144,9 +144,12 @@ PARTS = (Fraction(0), Fraction(3, 10), Fraction(4, 5))  # of a gap
 def other_functions(model: Model) -> Iterator[Check]:
     """Check that functions through samples go through them; none where the model has no such functions."""
     laws = [found for found in map(_sampled, _expressions(model)) if found is not None]
+    tables = (table.function(name).function for name, table in model.tables.items())
+    laws += [(function, function.declared) for function in tables if function.declared is not None]
     if laws:
         name = "functions through samples go through them, and between them as they are declared"
-        yield checked(name, first_wrong(map(_wrong, laws)), "floating point")
+        off = (_off_table(name, table) for name, table in model.tables.items())
+        yield checked(name, first_wrong((*map(_wrong, laws), *off)), "floating point")
 
 
 def _expressions(model: Model) -> Iterator[Expression]:
@@ -176,6 +179,20 @@ def _wrong(law: tuple[Sampled, DeclaredSamples]) -> str:
     if away[k] <= tolerances.COMPUTED * (1 + abs(due).max()):
         return ""
     return f"{found[k]:.10g} at t = {float(places[k]):.6g} s for {due[k]:.10g}"
+
+
+def _off_table(name: str, table: Any) -> str:
+    """Message that names a value of a table that its function, of SI and in SI, does not have; ""."""
+    at, unit = (1.0 if x is None else _size(x.text) for x in (table.at_unit, table.unit))
+    if at is None or unit is None:
+        return ""
+    function = table.function(name).function
+    largest = max(abs(float(y)) for y in table.values) * unit
+    for x, y in zip(table.at, table.values, strict=True):
+        found, due = float(function.at(float(x) * at, float, math.pi)), float(y) * unit
+        if abs(found - due) > tolerances.COMPUTED * (abs(due) + largest):
+            return f"{name} is {found:.10g} in SI at {float(x):g}, and {due:.10g} in the file"
+    return ""
 
 
 def _interpolated(given: DeclaredSamples, t: np.ndarray) -> np.ndarray:

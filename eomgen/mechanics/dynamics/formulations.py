@@ -395,6 +395,7 @@ def _balances(equations: EquationsOfMotion, free: list[str]) -> Iterator[tuple[s
     symbols = equations.symbols
     q_of: Mapping[str, Node] = {f"{q.name}'": q for q in symbols.q}
     massless = [k for k, row in enumerate(equations.M) if all(is_zero(x) for x in row)]
+    tables = equations.system.scope.model.functions
     for k in massless:
         u, force = symbols.u[k], equations.forcing[k]
         q, held = q_of.get(u.name), any(not is_zero(row[k]) for row in equations.J)
@@ -402,9 +403,9 @@ def _balances(equations: EquationsOfMotion, free: list[str]) -> Iterator[tuple[s
             continue
         rates = depends_on(force, symbols.u)
         if rates and _is_linear(force, symbols.u) and not is_zero(derivative(force, u)):
-            yield q.name, NodeBalance(rate=parse(to_text(force), longest=LONGEST + 1))
+            yield q.name, NodeBalance(rate=parse(to_text(force), longest=LONGEST + 1, tables=tables))
         elif not rates and depends_on(force, (q,)):
-            yield q.name, NodeBalance(gap=parse(to_text(force), longest=LONGEST + 1))
+            yield q.name, NodeBalance(gap=parse(to_text(force), longest=LONGEST + 1, tables=tables))
 
 
 def _is_linear(force: Scalar, u: tuple[Node, ...]) -> bool:

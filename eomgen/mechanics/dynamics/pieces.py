@@ -178,7 +178,7 @@ class Division:
     def conditions(self, x: Node, choice: int) -> Iterator[Condition]:
         """Conditions under which a node makes this choice."""
         if x.op == "sampled":
-            ends = sampled_of(x.args[1]).spline.bounds
+            ends = sampled_of(x.args[1]).ends(x.graph.pi)
             if choice > 0:
                 yield self._condition(ends[choice - 1] - x.args[0])
             if choice < len(ends):

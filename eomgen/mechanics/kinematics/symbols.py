@@ -402,6 +402,8 @@ class Scope:
         states = {name: graph.symbol(name) for name in model.states}
         symbols = Symbols(graph, t, parameters, inputs, q, u, a, unknowns=unknowns, z=tuple(states.values()))
         names: dict[str, Scalar] = {**parameters, **unknowns, **inputs, **states, "t": t, "pi": graph.pi}
+        tables: dict[str, Any] = {f"{name}(": table for name, table in model.functions.items()}  # looked up by calls
+        names |= tables
         names |= {name: symbol for name, symbol in zip(model.coordinates, q, strict=True)}
         N: list[tuple[Scalar, ...]] = []
         nu: list[Scalar] = []

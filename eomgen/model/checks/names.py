@@ -27,7 +27,7 @@ from eomgen.model.fields import (
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.positions import DocumentPath
 from eomgen.model.typed import typing_of
-from eomgen.symbolic.expression import DEGREES, Expression, degrees, is_name, meant_name
+from eomgen.symbolic.expression import DEGREES, NAMES, Expression, degrees, is_name, meant_name
 
 RESERVED = {"t": "time", "pi": "the constant", "nan": "no number", "inf": "no number", "infinity": "no number"}
 _WORD = re.compile(r"\w+")
@@ -38,7 +38,8 @@ def names(catalog: Catalog) -> Iterator[Diagnostic]:
     yield from _symbols(catalog)
     yield from _objects(catalog)
     yield from _points(catalog)
-    yield from _twice(catalog, SYMBOL_TABLES)
+    yield from _tables(catalog)
+    yield from _twice(catalog, (*SYMBOL_TABLES, "tables"))
     yield from _twice(catalog, OBJECT_TABLES)
 
 
@@ -52,6 +53,15 @@ def _symbols(catalog: Catalog) -> Iterator[Diagnostic]:
                 )
             elif not is_name(name):
                 yield _no_name(table, name, "letters, digits and _, a letter first")
+
+
+def _tables(catalog: Catalog) -> Iterator[Diagnostic]:
+    for name in catalog.table("tables"):
+        if name in NAMES or name in FUNCTIONS:
+            what = f"'{name}' is a function already"
+            yield Diagnostic(("tables", name), what, "take another name", key=True)
+        elif not is_name(name) or name in RESERVED:
+            yield _no_name("tables", name, "letters, digits and _, a letter first")
 
 
 def _objects(catalog: Catalog) -> Iterator[Diagnostic]:

@@ -42,6 +42,10 @@ from eomgen.symbolic.expression.formula import Instruction as Instruction
 
 # A name as an argument: of a constraint (`B`), a body, a point (`arm.end`), a member (`n1-n2`), a coordinate
 from eomgen.symbolic.expression.formula import Reference as Reference
+
+# The expression of a number or a text; a float means the decimal that it is written as (0.1 is 1/10)
+# A function that a model declares by a table of values
+from eomgen.symbolic.expression.formula import TableFunction as TableFunction
 from eomgen.symbolic.expression.formula import cos as cos
 from eomgen.symbolic.expression.formula import function as function
 from eomgen.symbolic.expression.formula import inner as inner
@@ -149,8 +153,6 @@ from eomgen.symbolic.expression.text import RATES as RATES
 
 # what dT/dq' is read as: slope_of(T, q'), of an energy by a coordinate or its rate
 from eomgen.symbolic.expression.text import SLOPE as SLOPE
-
-# The expression of a number or a text; a float means the decimal that it is written as (0.1 is 1/10)
 from eomgen.symbolic.expression.text import as_expression as as_expression
 
 # (phi, how many dots, where it ends) of diff(phi, t), ddot(phi); None of others

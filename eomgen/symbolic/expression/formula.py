@@ -131,12 +131,33 @@ def through_samples(sampled: Sampled, t: AnyScalar, pi: AnyScalar = None) -> Any
     """The value at t of a function through samples; in the graph it stays one operation."""
     if type(t) is Node:
         return t.graph.call("sampled", t, number_of_sampled(sampled))
+    if is_exact(t) and t != 0 and sampled.measure[1]:  # an argument by pi is no rational number
+        lifted: Any = math.pi if pi is None else pi
+        if type(lifted) is Node:
+            return lifted.graph.call("sampled", t, number_of_sampled(sampled))
+        return through_samples(sampled, t + (lifted - lifted), lifted)
     if is_exact(t):
-        value = sampled.spline.at(Fraction(t))
+        value = sampled.spline.at(Fraction(t) * sampled.measure[0])
         return bounded(value) if sampled.pi_power == 0 else value * (math.pi if pi is None else pi) ** sampled.pi_power
     if isinstance(t, float):
         return sampled.at(t, float, math.pi)
     return sampled.chosen(t, selected, pi)
+
+
+@dataclass(frozen=True)
+class TableFunction:
+    """A function that a model declares by a table of values, of an argument and with values in SI."""
+
+    function: Sampled
+
+    def at(self, x: Any, pi: Any) -> Any:
+        """The value at any scalar; pi is one of its kind."""
+        return through_samples(self.function, x, pi)
+
+    @property
+    def rate(self) -> TableFunction:
+        """Its derivative."""
+        return TableFunction(self.function.derivative())
 
 
 def function_value(name: str, args: tuple[AnyScalar, ...], pi: AnyScalar = None) -> AnyScalar:
@@ -270,8 +291,9 @@ class Expression:
 
     @property
     def sampled(self) -> Sampled | None:
-        """The function through samples that this is, or None."""
-        return self.code[1][1] if len(self.code) == 2 and self.code[1][0] == "sampled" else None
+        """The function of time through samples that this is, or None."""
+        of_time = len(self.code) == 2 and self.code[0] == ("name", "t") and self.code[1][0] == "sampled"
+        return self.code[1][1] if of_time and not self.code[1][1].called else None
 
     def named(self, name: str) -> Expression:
         """The same; a function through samples with a name by which it is printed."""
@@ -340,6 +362,8 @@ class Expression:
                 stack.append(what)
             elif kind == "name":
                 stack.append(self._looked_up(what, lookup, position))
+            elif kind == "call" and f"{what.name}(" in lookup:
+                stack.append(self._of_table(what, lookup, call, position))
             elif kind == "call":
                 stack.append(self._called(what, call))
             else:
@@ -351,6 +375,21 @@ class Expression:
             return lookup[name]
         except KeyError:
             raise unknown("name", name, lookup, self.columns[position]) from None
+
+    def _of_table(
+        self, what: Call, lookup: Mapping[str, AnyScalar], call: Callable[[Call], AnyScalar] | None, position: int
+    ) -> AnyScalar:
+        """The value of a table of the model, which the mapping has under its name with a bracket: M( of M(n)."""
+        if len(what.args) != 1:
+            raise ExpressionError(
+                f"'{what.name}' takes 1 argument", what.column, f"write {what.name}(x)", len(what.name)
+            )
+        (x,) = what.args
+        table: Any = lookup[f"{what.name}("]
+        name = x.name if isinstance(x, Reference) else ""
+        inner = x.evaluate(lookup, call) if isinstance(x, Expression) else self._looked_up(name, lookup, position)
+        found: AnyScalar = table.at(inner, lookup.get("pi"))
+        return found
 
     def _called(self, what: Call, call: Callable[[Call], AnyScalar] | None) -> AnyScalar:
         if call is None:

@@ -133,12 +133,18 @@ class Sampled:
         name: as it is printed: theta', a rate that is given.
         spline: its values over pi^pi_power.
         declared: the samples; None of its rate and its integral.
+        called: it is printed with its argument, M(n): a table of any variable, and not a function of time alone.
+        units: of its argument and of its values, in SI; "" of what is not known.
+        measure: (factor, power of pi) that make its argument one in the unit of its samples: degrees of radians.
     """
 
     name: str
     spline: Spline
     pi_power: int = 0
     declared: DeclaredSamples | None = field(default=None, compare=False, repr=False)
+    called: bool = False
+    units: tuple[str, str] = field(default=("", ""), compare=False, repr=False)
+    measure: tuple[Fraction, int] = (Fraction(1), 0)
 
     WAYS = ("cubic", "linear", "steps", "pchip")
     """between samples"""
@@ -150,7 +156,11 @@ class Sampled:
     """of a cubic, the usual one first"""
 
     def derivative(self) -> Sampled:
-        return Sampled(f"{self.name}'", self.spline.derivative(), self.pi_power)
+        factor, power = self.measure
+        slope = self.spline.derivative().scaled(factor) if factor != 1 else self.spline.derivative()
+        at, unit = self.units
+        units = (at, f"{unit}/({at})" if at and unit else "")
+        return Sampled(f"{self.name}'", slope, self.pi_power + power, None, self.called, units, self.measure)
 
     def integral(self) -> Sampled:
         """The integral from t = 0 on."""
@@ -165,16 +175,28 @@ class Sampled:
 
     def scaled(self, factor: Fraction, pi_power: int) -> Sampled:
         given = self.declared and replace(self.declared, factor=self.declared.factor * factor)
-        return Sampled(self.name, self.spline.scaled(factor), self.pi_power + pi_power, given)
+        return replace(self, spline=self.spline.scaled(factor), pi_power=self.pi_power + pi_power, declared=given)
+
+    def measured(self, t: Any, pi: Any, number: Callable[[Fraction], Any] = lambda x: x) -> Any:
+        """An argument in the unit of the samples."""
+        factor, power = self.measure
+        t = t * number(factor) if factor != 1 else t
+        return t * pi**power if power > 0 else t / pi**-power if power else t
+
+    def ends(self, pi: Any, number: Callable[[Fraction], Any] = lambda x: x) -> tuple[Any, ...]:
+        """The arguments at which one piece ends and the next begins."""
+        factor, power = self.measure
+        found = (number(end / factor) for end in self.spline.bounds)
+        return tuple(end / pi**power if power > 0 else end * pi**-power if power else end for end in found)
 
     def at(self, t: Any, number: Callable[[Fraction], Any], pi: Any) -> Any:
         """The value at a number; pi is one of its kind."""
-        value = self.spline.at(t, number)
+        value = self.spline.at(self.measured(t, pi, number), number)
         return value * pi**self.pi_power if self.pi_power else value
 
     def chosen(self, t: Any, choose: Callable[..., Any], pi: Any) -> Any:
         """The value over any scalar; pi is one of its kind."""
-        value = self.spline.chosen(t, choose)
+        value = self.spline.chosen(self.measured(t, pi, _tidy), choose)
         return value * pi**self.pi_power if self.pi_power else value
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 import unicodedata
-from collections.abc import Callable, Container, Iterable
+from collections.abc import Callable, Container, Iterable, Mapping
 from decimal import Decimal
 from numbers import Rational
 from typing import Any
@@ -18,6 +18,7 @@ from eomgen.symbolic.expression.formula import (
     Expression,
     Instruction,
     Reference,
+    TableFunction,
     Undefined,
     apply_operation,
     bounded,
@@ -179,29 +180,36 @@ EXTREMES = ("min", "max")  # of several values; where outputs may stand, of one 
 _NO_NUMBERS = ("nan", "inf", "infinity")
 
 
-def parse(text: str, *, references: bool = False, longest: int = LONGEST) -> Expression:
+def parse(
+    text: str, *, references: bool = False, longest: int = LONGEST, tables: Mapping[str, TableFunction] | None = None
+) -> Expression:
     """The expression that a text writes.
 
     Args:
         references: functions of the outputs (`speed(bar.end)`) are allowed, as calls.
         longest: characters; more than the default only for a text of our own making.
+        tables: functions that a model declares, by name.
     Raises:
         ExpressionError: it is none; column and length say where.
     """
-    parser = _Parser(text, references, longest, named=";" in text)
+    parser = _Parser(text, references, longest, named=";" in text, tables=tables)
     expression = parser.whole()
     if parser.token.kind != "end":
         raise parser.misplaced()
     return expression
 
 
-def parse_equation(text: str, *, references: bool = True) -> tuple[Expression, Expression]:
+def parse_equation(
+    text: str, *, references: bool = True, tables: Mapping[str, TableFunction] | None = None
+) -> tuple[Expression, Expression]:
     """Both sides of `left = right`.
 
+    Args:
+        tables: as of `parse`.
     Raises:
         ExpressionError: it is no equation; column and length say where.
     """
-    parser = _Parser(text, references)
+    parser = _Parser(text, references, tables=tables)
     left = parser.whole()
     if parser.token.kind == "end":
         raise ExpressionError(f"'{text.strip()}' is no equation", 0, "write left = right", max(1, len(text)))
@@ -251,8 +259,17 @@ def _exact_number(value: Fraction) -> Expression:
 class _Parser:
     """One pass over a text; `code` and `columns` grow in postfix order."""
 
-    def __init__(self, text: str, references: bool, longest: int = LONGEST, *, named: bool = False) -> None:
+    def __init__(
+        self,
+        text: str,
+        references: bool,
+        longest: int = LONGEST,
+        *,
+        named: bool = False,
+        tables: Mapping[str, TableFunction] | None = None,
+    ) -> None:
         _refuse_long(text, longest, named)
+        self.tables = tables or {}
         self.text, self.references, self.depth, self.named = text, references, 0, named
         self.parts: dict[str, int] = {}  # by name, at which height of the stack each stands
         self.height = 0
@@ -272,7 +289,7 @@ class _Parser:
         elif kind == "under":
             self.height -= len(what)
         else:
-            self.height -= what[1] - 1 if kind == "function" else 0 if kind == "neg" else 1
+            self.height -= what[1] - 1 if kind == "function" else 0 if kind in ("neg", "sampled") else 1
         self.code.append((kind, what))
         self.columns.append(column)
 
@@ -368,6 +385,9 @@ class _Parser:
             self.emit("name", _checked_name(token), token.start)
 
     def function(self, name: Token) -> None:
+        if name.text in self.tables:
+            self.of_table(name)
+            return
         if name.text not in NAMES and self.references:
             self.emit("call", Call(name.text, self.arguments_of_call(), name.start), name.start)
             return
@@ -394,6 +414,13 @@ class _Parser:
             return
         _check_count(name, count)
         self.emit("function", (name.text, count), name.start)
+
+    def of_table(self, name: Token) -> None:
+        """A table at its argument, in the unit in which it is declared."""
+        table, opening = self.tables[name.text], self.advance()
+        self.operand(0)
+        self.close(opening)
+        self.emit("sampled", table.function, name.start)
 
     def arguments_of_call(self) -> tuple[Reference | Expression, ...]:
         opening = self.token

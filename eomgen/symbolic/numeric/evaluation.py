@@ -233,9 +233,9 @@ def _whole_power(a: Any, exponent: Any) -> Any:
 
 
 def _rational_sample(t: Fraction, k: Fraction) -> Fraction:
-    if sampled_of(k).pi_power:
+    if sampled_of(k).pi_power or (sampled_of(k).measure[1] and t != 0):
         raise NoMeaning("pi is not rational")
-    return Fraction(sampled_of(k).spline.at(t))
+    return Fraction(sampled_of(k).spline.at(t * sampled_of(k).measure[0]))
 
 
 RATIONAL = Arithmetic(

@@ -130,7 +130,8 @@ def choices_at(nodes: Sequence[Node], state: State) -> Choices | None:
         if a != a or b != b:
             found.append(0)
             continue
-        ends = [fifty_digits().number(end) for end in sampled_of(x.args[1]).spline.bounds] if x.op == "sampled" else [b]
+        digits = fifty_digits()
+        ends = [*sampled_of(x.args[1]).ends(digits.functions["pi"](), digits.number)] if x.op == "sampled" else [b]
         if any(abs(a - end) <= tolerances.CERTAIN_AT_50 * (1 + abs(end)) for end in ends):
             return None
         passed = len([end for end in ends if a > end])
@@ -171,6 +172,7 @@ def _as_chosen(x: Node, choice: int, sides: Sequence[Scalar]) -> Scalar:
 
 def _polynomial_of(sampled: Sampled, piece: int, t: Scalar, pi: Node) -> Scalar:
     """The polynomial of one piece of the samples."""
+    t = sampled.measured(t, pi)
     s, found = t - sampled.spline.origins[piece], 0 * t
     for c in reversed(sampled.spline.pieces[piece]):
         found = found * s + c
@@ -214,4 +216,4 @@ def _thrown_by(x: Node) -> Iterator[tuple[dict[Any, Any], Sequence[Scalar]]]:
     elif x.op in ABOUT_ZERO or _base(x) is not None:
         yield linear_terms(compared_sides(x)[0]), (0,)
     elif x.op == "sampled":
-        yield linear_terms(x.args[0]), sampled_of(x.args[1]).spline.bounds
+        yield linear_terms(x.args[0]), sampled_of(x.args[1]).ends(x.graph.pi)

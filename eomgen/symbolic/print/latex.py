@@ -169,9 +169,13 @@ class Setter:
         if op in ("symbol", "pi"):
             tex = r"\pi" if op == "pi" else self.notation.latex(node.name)
             return Set(tex, TALL if "^" in tex else ATOM)
-        if op == "sampled":
+        if op == "sampled" and not sampled_of(node.args[1]).called:
             return Set(self.notation.latex(sampled_of(node.args[1]).name))
         arguments = [self._set[a] if type(a) is Node else _number(a) for a in node.args]
+        if op == "sampled":
+            name = sampled_of(node.args[1]).name
+            tex = self.notation.latex(name.rstrip("'")) + "'" * (len(name) - len(name.rstrip("'")))
+            return Set(tex + _in_brackets(arguments[0].tex), ATOM)
         if op == "sqrt":
             arguments = [self._in_one_fraction(node.args[0])]
         inside = ", ".join(a.tex for a in arguments)

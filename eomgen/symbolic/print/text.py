@@ -121,7 +121,9 @@ def _base_text(node: Node, printed: Printed, plans: Mapping[Node, list[Product]]
     if node.op in ("symbol", "pi"):
         return (node.name if node.op == "symbol" else "pi"), ATOM
     if node.op == "sampled":
-        return sampled_of(node.args[1]).name, ATOM
+        sampled, x = sampled_of(node.args[1]), node.args[0]
+        own = printed[x][0] if type(x) is Node else number_text(x)
+        return f"{sampled.name}({own})" if sampled.called else sampled.name, ATOM
     if node.op == "pow":
         return "^".join(_tight(a, printed) for a in node.args), POWER
     products = plans.get(node.args[0], []) if node.op == "sqrt" or node.op in TRIGONOMETRIC else []
@@ -162,7 +164,9 @@ def _size(node: Node, sizes: Mapping[Node, int]) -> int:
     if node.op in ("symbol", "pi"):
         return len(node.name) if node.op == "symbol" else 2
     if node.op == "sampled":
-        return len(sampled_of(node.args[1]).name)
+        sampled, x = sampled_of(node.args[1]), node.args[0]
+        own = sizes[x] if type(x) is Node else number_length(x)
+        return len(sampled.name) + (2 + own if sampled.called else 0)
     size = _SIGNS.get(node.op) or len(node.op) + 2 * len(node.args)
     for a in node.args:
         size += sizes[a] if type(a) is Node else number_length(a)
