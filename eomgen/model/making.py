@@ -323,7 +323,7 @@ def with_limits(model: Any) -> Any:
     """The model with a constraint for each limit of a joint: arm_low, arm_high; of several variables arm_angle_low."""
     found = dict(model.constraints or {})
     for body, part in (model.bodies or {}).items():
-        joint = None if part is None else part.joint
+        joint: Any = None if part is None else part.joint
         for k, field, limits in () if joint is None else joint.limits_of_variables:
             variable = getattr(joint, field)
             unit = _unit_of(model, variable)
