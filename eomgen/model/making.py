@@ -18,7 +18,7 @@ from eomgen.model.outputs.base import AXES, DRY_JOINT, SIDES
 from eomgen.model.part import Part, read_part
 from eomgen.model.positions import DocumentPath
 from eomgen.model.typed import Typing, typing_of
-from eomgen.model.value_tables import TABLES, functions_of, with_functions
+from eomgen.model.value_tables import TABLES, functions_of_tables, with_functions
 from eomgen.symbolic.expression import NAMES, Call, Expression, Reference, parse, rate_of_call
 
 # -------- all checks -------------------------------------------------------------------------------------------
@@ -298,7 +298,7 @@ Made = TypeVar("Made", bound=Part)
 def draft_of(cls: Any, raw: Mapping[str, Any], title: str, found: list[Diagnostic]) -> Any:
     """A model from the tables of a file, unchecked; what could not be read is None and has a diagnostic."""
     if TABLES in raw:
-        raw = with_functions(raw, functions_of(raw[TABLES], found), found)
+        raw = with_functions(raw, functions_of_tables(raw[TABLES], found), found)
     draft = read_part(cls, {"name": title, **raw}, (), found, known=("eomgen",))
     seated = draft.altered(bodies=_seated(draft))
     limited = with_limits(seated)
@@ -364,7 +364,7 @@ def finish(model: Any) -> None:
         ModelError: every problem at once, by path ("bodies.arm.joint.on").
     """
     found: list[Diagnostic] = []
-    functions = functions_of({} if model.tables is None else model.tables, found)
+    functions = functions_of_tables({} if model.tables is None else model.tables, found)
     for slot in type(model).slots():
         raw = getattr(model, slot.name)
         if raw is not slot.default:

@@ -98,7 +98,7 @@ def _si(unit: Unit | None) -> str:
     return "" if unit is None else unit.si
 
 
-def functions_of(raw: Any, found: list[Diagnostic]) -> dict[str, TableFunction]:
+def functions_of_tables(raw: Any, found: list[Diagnostic]) -> dict[str, TableFunction]:
     """The functions that tables of a file declare, those of wrong ones left out: their own reading reports them."""
     functions = {}
     for name, entry in raw.items() if isinstance(raw, Mapping) else ():
