@@ -224,11 +224,12 @@ class _Bodies:
         if np.max(np.abs(early[:q] - late[:q]), initial=0.0) > tolerances.OPEN_GAP * size:
             return "a coordinate jumps"
         pushes, frees = [], [J for J, _ in self._rows_at(self.system.constraints.closing, late)]
+        still = np.array_equal(early, late)
         e, mu, exactly = self._restitutions, self._frictions, self._rebounds_exactly
         for name, rows in self._rows.items():
             found = self._rows_at(rows, late)
             speeds = [v for _, v in found]
-            if not self._touches(name, rows):
+            if not self._touches(name, rows) or (still and self._stays_open(name)):
                 continue
             approach = self._rows_at(rows[:1], early)[0][1]
             due = -e.get(name, 0.0) * min(approach, 0.0) * (exactly and name not in mu)
@@ -350,9 +351,11 @@ class _Bodies:
         t, x = (values[-1] for values in self.before.track)
         later = x - tolerances.SOON * self.before.model.rate(float(t), x)
         state = self._state(self.before.model.values(float(t), later))
-        v, earlier = (self._rows_at((row,), each)[0][1] for each in (early, state))
+        rows = [row, *(own[0] for own in self._rows.values())]  # where others close too it falls as fast as these
+        pairs = zip(self._rows_at(rows, early), self._rows_at(rows, state), strict=True)
+        fastest = max(abs(v - earlier) for (_, v), (_, earlier) in pairs)
         height = LOW * max(1.0, float(np.max(np.abs(early), initial=0.0)))
-        return due * due <= 2 * abs(v - earlier) / tolerances.SOON * height
+        return due * due <= 2 * fastest / tolerances.SOON * height
 
     @property
     def _end(self) -> Mapping[str, float]:
@@ -376,6 +379,9 @@ class _Bodies:
     def _rows(self) -> dict[str, tuple[Row, ...]]:
         return {name: rows_of_constraint(self.system.motion, name) for name in self.contacts}
 
+    def _stays_open(self, name: str) -> bool:
+        return all(name in phase.model.configuration.open for phase in (self.before, self.after))
+
     def _touches(self, name: str, rows: Sequence[Row]) -> bool:
         """True if a contact is closed before or after, or its gap is 0."""
         if any(name not in phase.model.configuration.open for phase in (self.before, self.after)):
@@ -383,6 +389,8 @@ class _Bodies:
         gap = self._end.get(PhaseModel.slack_name(name), 0.0)
         if rows[0].gap is not None:
             gap = float(self._numbers((rows[0].gap,), self._state(self._end)[None])[0, 0])
+        if name in self._restitutions:  # its flights are followed down to these
+            return abs(gap) <= 10 * tolerances.LOWEST_FLIGHT * max(1.0, float(np.max(np.abs(self._state(self._end)))))
         return abs(gap) <= tolerances.OPEN_GAP
 
     def _rows_at(self, rows: Sequence[Row], state: np.ndarray) -> list[tuple[np.ndarray, float]]:

@@ -503,3 +503,65 @@ def test_an_impact_is_asked_of_a_contact_that_can_close():
         derived(TWO_BALLS, "wall")
     with pytest.raises(DerivationError, match="friction has a part in the impact of 'floor'"):
         derived(DUMBBELL.replace('restitution = "e"', 'restitution = "e"\nfriction = 0.3'))
+
+
+# -- machines with several contacts ----------------------------------------------------------------
+
+BOX = """
+parameters = { m = 1, g = 9.81, e = 0.3, b = 0.3, h = 0.2 }
+coordinates = { x = {}, y = { start = 0.6 }, phi = { start = 0.3, speed = 0.5 } }
+[bodies.box]
+shape = { kind = "rectangle", mass = "m", width = "2*b", height = "2*h" }
+points = { left = ["-b", "-h"], right = ["b", "-h"] }
+joint = { kind = "planar", x = "x", y = "y", angle = "phi" }
+[constraints.left]
+kind = "support"
+point = "box.left"
+normal = [0, 1]
+at = [0, 0]
+unilateral = true
+restitution = "e"
+[constraints.right]
+kind = "support"
+point = "box.right"
+normal = [0, 1]
+at = [0, 0]
+unilateral = true
+restitution = "e"
+"""
+FUNNEL = """
+parameters = { m = 1, g = 9.81, e = 0.7 }
+coordinates = { x = { start = 0.13 }, y = { start = 1 } }
+bodies.ball = { shape = { kind = "particle", mass = "m" }, joint = { kind = "placed", at = ["x", "y"] } }
+[constraints.left]
+kind = "support"
+point = "ball.origin"
+normal = [1, 1]
+at = [0, 0]
+unilateral = true
+restitution = "e"
+[constraints.right]
+kind = "support"
+point = "ball.origin"
+normal = [-1, 1]
+at = [0, 0]
+unilateral = true
+restitution = "e"
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("text", [BOX, FUNNEL])
+def test_what_falls_on_two_contacts_loses_what_its_impacts_say(text):
+    """E at the start less E at the end is the sum of the losses; every impact is that of momenta and restitution."""
+    result = run(text, 1.5)
+    lost = sum(impact.loss for impact in result.impacts)
+    assert result.energy[0] - result.energy[-1] == pytest.approx(lost, rel=1e-7)
+    assert len(result.impacts) > 5 and result.certify().ok
+
+
+def test_a_box_comes_to_rest_on_both_corners():
+    """After bounces without end on each: y = h, phi = 0."""
+    result = run(BOX, 1.0)
+    assert (result["y"][-1], result["phi"][-1]) == pytest.approx((0.2, 0), abs=1e-8)
+    assert result.phases[-1].model.configuration.open == ()
