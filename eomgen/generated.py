@@ -382,7 +382,7 @@ def _refuse_integrator(model: Model, targets: Sequence[str]) -> None:
 def _remarks(model: Model) -> dict[str, str]:
     """{argument: its SI unit, where the file names a unit, and its description}."""
     remarks = {}
-    for part_of in (model.parameters, model.coordinates, model.inputs):
+    for part_of in (model.parameters, model.coordinates, model.states, model.inputs):
         for name, part in part_of.items():
             unit = f"[{part.unit.si}]" if part.unit is not None else ""
             remarks[name] = " ".join(word for word in (unit, part.about or "") if word)

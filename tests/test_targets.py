@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hand_made import cart_pole, pendulum, spring_row, symbols, tied_pendulum
+from hand_made import cart_pole, motor, pendulum, spring_row, symbols, tied_pendulum
 from slow_run import sampled
 from tools import each_target, every_target, marked, needs, tool
 
@@ -133,6 +133,7 @@ SYSTEMS = {
     "row of springs, in a loop": lambda: spring_row(20),
     "tie": tied_pendulum,
     "constraint said three times": lambda: tied_pendulum(3),
+    "states": motor,
 }
 
 

@@ -74,8 +74,8 @@ def vectors(
 def _special(program: Program, like: TestVector, x0: Any) -> list[TestVector]:
     """Vectors at states where pieces and singular positions are met: the start, and at rest there; or all zero."""
     x = tuple([0.0] * len(program.states) if x0 is None else [float(v) for v in x0])
-    nq = len(program.symbols.q)
-    states = dict.fromkeys([x, (*x[:nq], *(0.0 for _ in x[nq:]))])
+    q, u = len(program.symbols.q), len(program.symbols.u)
+    states = dict.fromkeys([x, (*x[:q], *[0.0] * u, *x[q + u :])])
     return [replace(like, t=0.0, x=state, inputs=None, result=()) for state in states]
 
 

@@ -169,7 +169,8 @@ def with_symbols(document: Document, symbols: Mapping[str, Symbol]) -> Document:
 
 def own_words(model: Model) -> Iterator[str]:
     """The words of a model's author, which no language changes: its names and remarks."""
-    tables = (model.parameters, model.coordinates, model.speeds, model.inputs, model.unknowns, model.outputs)
+    moving = (model.coordinates, model.speeds, model.states)
+    tables = (model.parameters, *moving, model.inputs, model.unknowns, model.outputs)
     objects = (model.points, model.bodies, model.constraints, model.trusses, model.forces)
     yield from (name for table in (*tables, *objects) for name in table)
     parts = (part for table in (*tables, model.bodies) for part in table.values())
@@ -218,7 +219,7 @@ def _leaves(name: str, entry: Any) -> Iterator[tuple[str, Quantity]]:
 
 def notation_of(model: Model) -> Notation:
     """Notation that a model declares."""
-    tables = (model.parameters, model.coordinates, model.speeds, model.inputs, model.unknowns)
+    tables = (model.parameters, model.coordinates, model.speeds, model.states, model.inputs, model.unknowns)
     symbols = {name: part.symbol for table in tables for name, part in table.items() if part.symbol is not None}
     indices = {name: body.symbol.tex for name, body in model.bodies.items() if body.symbol is not None}
     constraints = {

@@ -268,14 +268,15 @@ def notation_of_run(run: Trajectory) -> Notation:
     if known is None:
         return Notation()
     model: Model = known.declared.scope.model
-    others = {name for table in (model.parameters, model.coordinates, model.speeds, model.inputs) for name in table}
+    tables = (model.parameters, model.coordinates, model.speeds, model.states, model.inputs)
+    others = {name for table in tables for name in table}
     own = {name: each.symbol for name, each in model.outputs.items() if each.symbol and name not in others}
     return notation_of(model).with_symbols(own)
 
 
 def heads_in_symbols(run: Trajectory) -> dict[str, str]:
     r"""{column of a run: its name as formulas have it, "$\varphi$"}; energy and reactions keep their names."""
-    notation, named = notation_of_run(run), ("t", *run.coordinates, *run.speeds, *run.outputs)
+    notation, named = notation_of_run(run), ("t", *run.coordinates, *run.speeds, *run.states, *run.outputs)
     return {name: f"${notation.latex(name)}$" for name in run.columns() if name in named}
 
 

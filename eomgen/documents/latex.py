@@ -331,7 +331,7 @@ def _quantity(setter: Setter, side: Name | Entry | Partial | Rate) -> str:
         sign = "-" if side.sign < 0 else ""
         return rf"{sign}\frac{{\partial {_name(setter, side.of)}}}{{\partial {_symbol(setter, side.by)}}}"
     if isinstance(side.of, Node):
-        return rf"\dot{{{_symbol(setter, side.of)}}}"
+        return setter.notation.latex(f"{side.of.name}'")
     return rf"\frac{{d}}{{dt}} {_quantity(setter, side.of)}"
 
 

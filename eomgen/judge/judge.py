@@ -424,8 +424,8 @@ class Judge:
             return requested(case, written, kind, at)
         if unknown:
             return self._of_other_names(written, kind, unknown)
-        found = of_state(case, written, kind)
-        if (found := self._course(written) if found is None else found) is not None:
+        found = self._course(written)
+        if (found := of_state(case, written, kind) if found is None else found) is not None:
             return found
         return self._of_scalar(written, kind, case.value(written.difference))
 
@@ -524,17 +524,20 @@ class Judge:
             with_values = f", with {values_reported(course.values)}" if course.values else ""
             return Verdict(written.given, "law", RIGHT, f"{reported}{with_values}{while_(course.held)}")
         rest = "" if course.holds else excess(case, course.left[0] if len(course.left) == 1 else 0)
+        (state,) = {name.removesuffix("'") for name in written.left.names} & {*case.model.states} or {""}
+        law = f"the rate of {state}" if state else "the equation of motion"
         target = implied_by_course(case, course.known) if not course.holds else None
         found = simplest_explanation([target] if target is not None else [])[1]
         if found:
             causes = causes_of(case, found, moving=False)
         elif course.holds:
-            text = f"the equations of motion hold with it, but at the start {of_the_start(case, course)}"
+            begun = of_the_start(case, course) or "it is another"
+            text = f"the equations of motion hold with it, but at the start {begun}"
             causes = (Cause("wrong_quantity", text, quantity="the start"),)
         else:
-            text = "the equations of motion do not hold with it"
+            text = f"{law} does not hold with it" if state else "the equations of motion do not hold with it"
             text = f"{text}: put in, there is left {rest}" if rest else text
-            causes = (Cause("other", text, quantity="the equation of motion"),)
+            causes = (Cause("other", text, quantity=law),)
         return Verdict(written.given, "law", WRONG, difference=rest, causes=causes)
 
     # -- other names ---------------------------------------------------------------------------------

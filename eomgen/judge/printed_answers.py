@@ -167,7 +167,12 @@ def _entry(small: SmallMatrices, entry: re.Match[str], row: str, column: str) ->
 def _names(case: Case, entry: re.Match[str]) -> tuple[str, str] | None:
     """Names of row and column as the model has them, \\dot\\theta as theta'; None: it has none of these."""
     model = case.model
-    known = {*model.inputs, *(f"{q}{dot}" for q in model.coordinates for dot in ("", "'")), *model.speeds}
+    known = {
+        *model.inputs,
+        *(f"{q}{dot}" for q in model.coordinates for dot in ("", "'")),
+        *model.speeds,
+        *model.states,
+    }
     pieces = [piece.strip() for piece in (entry["text"] or entry["index"]).split(",")]
     found = []
     for piece in pieces if len(pieces) == 2 else ():

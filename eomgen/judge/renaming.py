@@ -59,7 +59,8 @@ def renamings(case: Case, written: HandEquation, unknown: Sequence[str]) -> Iter
 
 def _renamings(case: Case, written: HandEquation, unknown: Sequence[str]) -> Iterator[Renaming]:
     coordinates = [name for name in case.model.coordinates if name not in written.names]
-    parameters = [name for name in (*case.model.parameters, *case.model.inputs) if name not in written.names]
+    still_named = (*case.model.parameters, *case.model.inputs, *case.model.states)
+    parameters = [name for name in still_named if name not in written.names]
     moving = [name for name in unknown if {f"{name}'", f"{name}''"} & written.names]
     still = [name for name in unknown if name not in moving]
     turns = cache(lambda of: list(_turns(case, of)) if of in case.model.coordinates else [(1, 0)])

@@ -498,7 +498,7 @@ def is_of_rest(case: Case, scalar: Scalar) -> bool | None:
             near = _at((row,), q, values, np.array([root]))[0, 0]
             size = np.nanmax(np.abs(_at((row,), q, values, _grid(values[q]))))
             if not abs(near) <= tolerances.SAME_EIGENVALUE * size:
-                return False
+                return None if case.system.symbols.z else False  # states may be such that it balances there
             seen += 1
     return True if seen else None
 
@@ -542,11 +542,11 @@ MOST_PLACES = 14  # of a course that are changed
 
 @dataclass(frozen=True)
 class Course:
-    """A coordinate q = f(t) put into the equations of motion.
+    """A coordinate q = f(t) put into the equations of motion, or a state into its rate.
 
     Args:
-        known: q and its rates as functions of time.
-        left: what is left of the equations of motion that know nothing else.
+        known: q and its rates, or the state, as functions of time.
+        left: what is left of the equations of motion, or of the rate of the state, that know nothing else.
         holds: whether that is nothing; None: undecided, or they do not decide it alone.
         begins: whether it starts as the model does; None: where that starts is not known.
         held: in which pieces it holds.
@@ -568,11 +568,13 @@ def course_of(case: Case, written: HandEquation, constants: Mapping[str, Scalar]
         constants: names of the author's own: where there are some, any start will do.
     """
     name = written.left.code[0][1] if len(written.left.code) == 1 and written.left.code[0][0] == "name" else ""
-    coordinates = case.model.coordinates
+    coordinates, states = case.model.coordinates, case.model.states
     moving = {*coordinates, *(f"{q}'" for q in coordinates), *(f"{q}''" for q in coordinates), *case.model.speeds}
-    if name.removesuffix("'") not in coordinates or "t" not in written.right.names or written.right.names & moving:
+    moving |= {*states, *(f"{z}'" for z in states)}
+    of = name.removesuffix("'")
+    if of not in (*coordinates, *states) or "t" not in written.right.names or written.right.names & moving:
         return None
-    if coordinates[name.removesuffix("'")].driven:
+    if of in coordinates and coordinates[of].driven:
         return None
     x = case.value(written.right, constants)
     found = _put_in(case, name, x, any_start=bool(constants))
@@ -594,6 +596,8 @@ def _put_in(
     values = values or {}
     (x,) = substituted((x,), values)
     symbols, scope, known = case.system.symbols, case.system.scope, dict[Node, Scalar]()
+    if name.removesuffix("'") in case.model.states:
+        return _of_state(case, name, x, values, any_start=any_start)
     for rate in (name, f"{name}'", f"{name}''")[: 3 - name.count("'")]:
         node = scope.names[rate]
         if type(node) is Node and node.op == "symbol":
@@ -612,7 +616,7 @@ def _put_in(
         left = [] if depends_on(found, others) else [found]
     inputs = {node: case.system.inputs[n] for n, node in symbols.inputs.items()}
     mine = substituted(tuple(left), inputs)
-    if not mine and name.endswith("'"):
+    if not mine and name.endswith("'") and not symbols.z:
         return None  # its coordinate stands in the equations: this is no course
     if not mine:
         return Course(known, mine, None, begins, values=values)
@@ -620,6 +624,31 @@ def _put_in(
     if follows.holds is False and follows.held:  # friction has its direction as long as the body slides on
         return Course(known, mine, True, begins, follows.held, values)
     return Course(known, mine, follows.holds, begins, values=values)
+
+
+def _of_state(case: Case, name: str, x: Scalar, values: Mapping[Node, Scalar], *, any_start: bool) -> Course:
+    """A state as a function of time put into its rate, or its rate put into the rate's own.
+
+    Undecided where what else moves is left.
+    """
+    symbols, scope = case.system.symbols, case.system.scope
+    z = scope.names[name.removesuffix("'")]
+    assert type(z) is Node, "a state is a symbol"
+    inputs = {node: case.system.inputs[n] for n, node in symbols.inputs.items()}
+    (rate,) = substituted((scope.names[f"{z.name}'"],), inputs)
+    if name.endswith("'"):
+        known, given = {}, rate - x
+        left = derivative(rate, z) * x + derivative(rate, symbols.t) - derivative(x, symbols.t)
+    else:
+        known, given = {z: x}, z - x
+        left = rate - derivative(x, symbols.t)
+    (given,) = substituted(substituted((given,), case.start), values) if values else (given,)
+    begins = True if any_start else case.starts_at_zero(given)
+    (left,) = substituted((left,), {**known, **values})
+    others = [other for other in (*symbols.x, *case.forced) if other is not z]
+    if depends_on(rate, others) or depends_on(left, (z,)):
+        return Course(known, (), None, begins, values=values)
+    return Course(known, (left,), is_zero_everywhere(case.system, left).holds, begins, values=values)
 
 
 def of_the_start(case: Case, course: Course) -> str:

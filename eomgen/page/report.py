@@ -462,7 +462,8 @@ def replaced(subject: Subject) -> dict[str, dict[str, str]]:
     model = subject.model
     own = loads(subject.source) if model.repeat is None else loads(subject.source, model.repeat.name)
     parameters = _other(own.parameters, model.parameters, "value")
-    starts = _other(own.coordinates, model.coordinates, "start") | _other(own.speeds, model.speeds, "start")
+    tables = ((own.coordinates, model.coordinates), (own.speeds, model.speeds), (own.states, model.states))
+    starts = {name: text for there, here in tables for name, text in _other(there, here, "start").items()}
     starts |= {f"{name}'": text for name, text in _other(own.coordinates, model.coordinates, "speed").items()}
     return {key: found for key, found in (("parameters", parameters), ("start", starts)) if found}
 

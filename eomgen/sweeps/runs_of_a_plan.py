@@ -300,8 +300,9 @@ def planned(model: Model, *, runs: int | None, **fields: Any) -> SweepPlan:
     for text in plan.requested:
         of, to = plan.slopes.get(text, (text, ""))
         output = requested_of(model, of)
-        if to and to.removesuffix("'") not in (*model.parameters, *model.coordinates, *model.speeds):
-            raise UsageError(f"'{text}': no parameter, coordinate or speed '{to}'", fix="name one of the model")
+        moving = (*model.coordinates, *model.speeds, *model.states)
+        if to and to.removesuffix("'") not in (*model.parameters, *moving):
+            raise UsageError(f"'{text}': no parameter, coordinate, speed or state '{to}'", fix="name one of the model")
         if output.event is not None and not isinstance(output.event, int):
             raise UsageError(f"'{text}' is of several instants", fix="request one of them: event 1")
     return plan

@@ -13,7 +13,9 @@ from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.expression.traversal import Symbols
 
 
-def symbols(coordinates: str, parameters: str = "", inputs: str = "", constraints: int = 0) -> Symbols:
+def symbols(
+    coordinates: str, parameters: str = "", inputs: str = "", constraints: int = 0, *, states: str = ""
+) -> Symbols:
     """Symbols of coordinates whose speeds are their rates."""
     graph = Graph()
     q = coordinates.split()
@@ -26,6 +28,7 @@ def symbols(coordinates: str, parameters: str = "", inputs: str = "", constraint
         tuple(graph.symbol(f"{name}'") for name in q),
         tuple(graph.symbol(f"{name}''") for name in q),
         tuple(graph.symbol(f"lam(constraint, {row + 1})") for row in range(constraints)),
+        z=tuple(graph.symbol(name) for name in states.split()),
     )
 
 
@@ -35,6 +38,12 @@ class Bare:
 
     symbols: Symbols
     inputs: Mapping[str, Scalar] = field(default_factory=dict)
+    state_rates: tuple[Scalar, ...] = ()
+
+    @property
+    def scope(self) -> Bare:
+        """Where equations of motion look for rates of states."""
+        return self
 
 
 def equations_of(
@@ -50,11 +59,12 @@ def equations_of(
     phi: Sequence[Scalar] = (),
     accelerations: Sequence[Scalar] | None = None,
     inputs: Mapping[str, Scalar] | None = None,
+    state_rates: Sequence[Scalar] = (),
 ) -> EquationsOfMotion:
     """Equations with q' = u."""
     n = len(symbols.q)
     return EquationsOfMotion(
-        Bare(symbols, inputs or {}),
+        Bare(symbols, inputs or {}, tuple(state_rates)),
         N=tuple(tuple(int(i == j) for j in range(n)) for i in range(n)),
         nu=(0,) * n,
         M=tuple(map(tuple, M)),
@@ -101,6 +111,15 @@ def tied_pendulum(copies: int = 1) -> EquationsOfMotion:
     gamma = [k * (vx**2 + vy**2) for k in range(1, copies + 1)]
     phi = [k * (x**2 + y**2 - l**2) / 2 for k in range(1, copies + 1)]
     return equations_of(s, [[m, 0], [0, m]], [0, 0], [0, -m * g], T=T, V=V, J=rows, gamma=gamma, phi=phi)
+
+
+def motor() -> EquationsOfMotion:
+    """A rotor with a current that its speed induces, and a sensor that follows its acceleration: x = (q, u, z)."""
+    s = symbols("theta", "J R L k", states="i y")
+    J, R, L, k = s.parameters.values()
+    (rate,), (a,), (i, y) = s.u, s.a, s.z
+    rates = ((-R * i - k * rate) / L, (a - y) / L)
+    return equations_of(s, [[J]], [0], [k * i - sin(s.q[0])], T=Fraction(1, 2) * J * rate**2, state_rates=rates)
 
 
 def spring_row(n: int) -> EquationsOfMotion:

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from scipy.linalg import expm
 
 import eomgen
 from eomgen.errors import DerivationError, ModelError
+
+MODELS = Path(__file__).parents[2] / "models"
 
 MOTOR = """
 eomgen = 1
@@ -224,6 +228,59 @@ def test_an_equation_for_the_rate_of_a_state_is_judged_by_its_terms(equation, ki
     verdict = eomgen.verify(eomgen.loads(MOTOR), equation)
     assert bool(verdict) == (not kind)
     assert [(x.kind, x.term) for x in verdict.causes] == ([(kind, term)] if kind else [])
+
+
+BLOCKED = """
+eomgen = 1
+space = "plane"
+[parameters]
+R = 2
+L = 0.1
+U = 5
+k = 0.3
+m = 1
+[coordinates]
+x = 0
+[states]
+i = { rate = "(U - R*i)/L", symbol = 'I_c', about = "current of a coil" }
+[bodies.cart]
+mass = "m"
+joint = { kind = "prismatic", axis = [1, 0], displacement = "x", force = "k*i" }
+"""
+
+
+@pytest.mark.parametrize(
+    ("equation", "verdict", "words"),
+    [
+        ("i = U/R*(1 - exp(-R*t/L))", "right", "the motion from the start"),
+        ("i' = U/L*exp(-R*t/L)", "right", "the motion from the start"),
+        ("i = U/R + C*exp(-R*t/L)", "right", "any start, with C constant"),
+        ("i = U/R*(1 + exp(-R*t/L))", "wrong", "at the start i is 2*U/R, and not 0"),
+        ("i = U/R*(1 - exp(-2*R*t/L))", "wrong", "the rate of i does not hold with it"),
+        ("i' = 2*U/L*exp(-R*t/L)", "wrong", "at the start it is another"),
+        ("x' = k*U/(m*R)*(t - L/R*(1 - exp(-R*t/L)))", "undecided", "do not decide it alone"),
+    ],
+)
+def test_a_state_as_a_function_of_time_is_put_into_its_rate(equation, verdict, words):
+    """z = f(t): f' = z'(f), f(0) = z(0); the certificate compares along runs besides."""
+    found = eomgen.verify(eomgen.loads(BLOCKED), equation)
+    assert found.verdict == verdict
+    assert words in " ".join([found.up_to, found.reason, *(cause.text for cause in found.causes)])
+
+
+@pytest.mark.parametrize(
+    ("equation", "right"), [("theta = r", True), ("i = m*g*l*cos(r)/(N*k)", True), ("i = m*g*l*sin(r)/(N*k)", False)]
+)
+def test_rest_of_a_machine_is_judged_with_its_states(equation, right):
+    """f(q, 0, z) = 0 and z' = 0 together give theta = r, which the balance of forces alone does not."""
+    assert bool(eomgen.verify(eomgen.load(MODELS / "position_servo.toml"), equation)) == right
+
+
+def test_the_symbol_and_the_remark_of_a_state_stand_wherever_its_name_does():
+    """In LaTeX by its symbol, with a dot for the rate; in code with unit and remark."""
+    equations = eomgen.derive(eomgen.loads(BLOCKED))
+    assert r"\dot{I}_{c} &=" in equations.render("latex")
+    assert "current of a coil" in "".join(map(str, eomgen.codegen(equations.model, "c").files.values()))
 
 
 def test_sensitivities_follow_states_through_a_run_and_at_rest():

@@ -108,6 +108,8 @@ class Equation(Constraint):
 
     Its multiplier is a generalized force. Places of points and angles of bodies may stand in both, velocities in a
     rate: what holds them pushes on the bodies, with lam times the derivative of the equation by each.
+    A quantity that changes by a law of its own and is no place of anything, as a current or a pressure, is better
+    declared in [states] than held by a rate of a dependent coordinate.
 
     Args:
         gap: of coordinates, places and time.
