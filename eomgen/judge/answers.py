@@ -20,10 +20,10 @@ from eomgen.judge.comparison import Comparison, excess
 from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.diagnosis import BELIEVED, PLAINEST
 from eomgen.judge.fixes import Authored, Fixes
-from eomgen.judge.implied import Instant, implied_by, simplest_explanation
+from eomgen.judge.implied import Instant, implied_by, implied_by_course, simplest_explanation
 from eomgen.judge.reading import FREQUENCY, HandEquation
 from eomgen.judge.terms import LONG, short_text, terms_of
-from eomgen.judge.truth import other_models, truth_of
+from eomgen.judge.truth import Course, other_models, truth_of
 from eomgen.judge.verdict import RIGHT, UNDECIDED, WRONG, Cause, Verdict, causes_of, kind_of_equation
 from eomgen.judge.written_pages import WrittenNumber
 from eomgen.model import Output, Unit, with_values
@@ -255,6 +255,36 @@ def _wrong(case: Case, written: HandEquation, kind: str, at: Instant, left: Answ
 
 # -------- states ----------------------------------------------------------------------------------------------
 # An equation for the rate of a state of first order -> what is wrong with it, term by term of the declared rate.
+
+
+def of_wrong_course(case: Case, written: HandEquation, course: Course) -> Verdict:
+    """The verdict on a course with which the equations of motion or the rate of a state do not hold, or the start."""
+    rest = "" if course.holds else excess(case, course.left[0] if len(course.left) == 1 else 0)
+    target = implied_by_course(case, course.known) if not course.holds else None
+    found = simplest_explanation([target] if target is not None else [])[1]
+    if found:
+        causes = causes_of(case, found, moving=False)
+    elif course.holds:
+        text = f"the equations of motion hold with it, but at the start {_of_the_start(case, course)}"
+        causes = (Cause("wrong_quantity", text, quantity="the start"),)
+    else:
+        law = f"the rate of {course.state}" if course.state else "the equation of motion"
+        text = f"{law} does not hold with it" if course.state else "the equations of motion do not hold with it"
+        text = f"{text}: put in, there is left {rest}" if rest else text
+        causes = (Cause("other", text, quantity=law),)
+    return Verdict(written.given, "law", WRONG, difference=rest, causes=causes)
+
+
+def _of_the_start(case: Case, course: Course) -> str:
+    """The differences at the start, in words: x is 0 there, and not x0."""
+    reported, at = [], {case.system.symbols.t: 0}
+    for x, value in course.known.items():
+        if x in case.start and not x.name.endswith("''"):
+            mine, own = substituted((value, case.start[x]), at)
+            if not case.starts_at_zero(x - mine):
+                texts = (short_text(y, case.system.scope.positive) or "another one" for y in (mine, own))
+                reported.append("{} is {}, and not {}".format(x.name, *texts))
+    return " and ".join(reported) or "it is another"
 
 
 def of_state(case: Case, written: HandEquation, kind: str) -> Verdict | None:

@@ -90,6 +90,32 @@ class Case:
             return is_zero_everywhere(self.system, *substituted(scalars, self.start)).holds
         return vanish_at(scalars, {**self.system.scope.known_parameters, **self.starting.numbers})
 
+    def put_into_rate(
+        self, name: str, x: Scalar, values: Mapping[Node, Scalar]
+    ) -> tuple[dict[Node, Scalar], Scalar, Scalar, bool]:
+        """A state, or its rate, as a function x of time: (what is known, what is left, what is 0 at the start, alone).
+
+        The state is put into its rate, the rate into the derivative of that; not alone: what else moves is left.
+
+        Args:
+            name: of the state, with a prime of its rate.
+            values: of parameters, put in too.
+        """
+        symbols, scope = self.system.symbols, self.system.scope
+        z = scope.names[name.removesuffix("'")]
+        assert type(z) is Node, "a state is a symbol"
+        inputs = {node: self.system.inputs[n] for n, node in symbols.inputs.items()}
+        (rate,) = substituted((scope.names[f"{z.name}'"],), inputs)
+        known: dict[Node, Scalar] = {}
+        if name.endswith("'"):
+            given, left = rate - x, derivative(rate, z) * x + derivative(rate, symbols.t) - derivative(x, symbols.t)
+        else:
+            given, left, known = z - x, rate - derivative(x, symbols.t), {z: x}
+        (left,) = substituted((left,), {**known, **values})
+        (given,) = substituted(substituted((given,), self.start), values) if values else (given,)
+        others = [other for other in (*symbols.x, *self.forced) if other is not z]
+        return known, left, given, not depends_on(rate, others) and not depends_on(left, (z,))
+
     @cached_property
     def as_begun(self) -> Case | None:
         """The same just after the start; None where nothing begins there."""

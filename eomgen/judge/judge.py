@@ -10,7 +10,7 @@ from typing import Any
 
 from eomgen.errors import DerivationError, EomgenError, ExpressionError, MissingValues, RunFailed, UsageError
 from eomgen.frozen import dataclass
-from eomgen.judge.answers import of_output, of_state, of_unknown, requested
+from eomgen.judge.answers import of_output, of_state, of_unknown, of_wrong_course, requested
 from eomgen.judge.balances import requests_reactions
 from eomgen.judge.case import Case
 from eomgen.judge.comparison import Comparison, excess, first_order_place, remainder
@@ -21,7 +21,6 @@ from eomgen.judge.implied import (
     Instant,
     Meanings,
     beside_rest,
-    implied_by_course,
     implied_by_rest,
     loosened_targets,
     simplest_explanation,
@@ -48,7 +47,6 @@ from eomgen.judge.truth import (
     course_of,
     in_its_piece,
     is_of_rest,
-    of_the_start,
     on_one_side,
     other_models,
     says_nothing,
@@ -523,22 +521,7 @@ class Judge:
             reported = f"any start, with {', '.join(constants)} constant" if constants else "the motion from the start"
             with_values = f", with {values_reported(course.values)}" if course.values else ""
             return Verdict(written.given, "law", RIGHT, f"{reported}{with_values}{while_(course.held)}")
-        rest = "" if course.holds else excess(case, course.left[0] if len(course.left) == 1 else 0)
-        (state,) = {name.removesuffix("'") for name in written.left.names} & {*case.model.states} or {""}
-        law = f"the rate of {state}" if state else "the equation of motion"
-        target = implied_by_course(case, course.known) if not course.holds else None
-        found = simplest_explanation([target] if target is not None else [])[1]
-        if found:
-            causes = causes_of(case, found, moving=False)
-        elif course.holds:
-            begun = of_the_start(case, course) or "it is another"
-            text = f"the equations of motion hold with it, but at the start {begun}"
-            causes = (Cause("wrong_quantity", text, quantity="the start"),)
-        else:
-            text = f"{law} does not hold with it" if state else "the equations of motion do not hold with it"
-            text = f"{text}: put in, there is left {rest}" if rest else text
-            causes = (Cause("other", text, quantity=law),)
-        return Verdict(written.given, "law", WRONG, difference=rest, causes=causes)
+        return of_wrong_course(case, written, course)
 
     # -- other names ---------------------------------------------------------------------------------
 

@@ -18,7 +18,7 @@ from eomgen.judge.decision import combination, is_zero_everywhere, linear_row, s
 from eomgen.judge.diagnosis import PLAINEST, SHORTER, TERMS, Explanation, Mistake, Share
 from eomgen.judge.model_edits import ModelEdits
 from eomgen.judge.reading import HandEquation
-from eomgen.judge.terms import LONG, short_text
+from eomgen.judge.terms import LONG
 from eomgen.mechanics.dynamics import Extent
 from eomgen.model import AtRest, WrittenEquation
 from eomgen.symbolic.exact import legible
@@ -551,6 +551,7 @@ class Course:
         begins: whether it starts as the model does; None: where that starts is not known.
         held: in which pieces it holds.
         values: of the file, that its numbers are: it holds with these.
+        state: into whose rate it is put; "": into the equations of motion.
     """
 
     known: Mapping[Node, Scalar]
@@ -559,6 +560,7 @@ class Course:
     begins: bool | None
     held: Extent = Extent(True)
     values: Mapping[Node, Scalar] = field(default_factory=dict)
+    state: str = ""
 
 
 def course_of(case: Case, written: HandEquation, constants: Mapping[str, Scalar]) -> Course | None:
@@ -597,7 +599,10 @@ def _put_in(
     (x,) = substituted((x,), values)
     symbols, scope, known = case.system.symbols, case.system.scope, dict[Node, Scalar]()
     if name.removesuffix("'") in case.model.states:
-        return _of_state(case, name, x, values, any_start=any_start)
+        put_in, rest, begin, alone = case.put_into_rate(name, x, values)
+        begins = True if any_start else case.starts_at_zero(begin)
+        holds = is_zero_everywhere(case.system, rest).holds if alone else None
+        return Course(put_in, (rest,), holds, begins, values=values, state=name.removesuffix("'"))
     for rate in (name, f"{name}'", f"{name}''")[: 3 - name.count("'")]:
         node = scope.names[rate]
         if type(node) is Node and node.op == "symbol":
@@ -624,43 +629,6 @@ def _put_in(
     if follows.holds is False and follows.held:  # friction has its direction as long as the body slides on
         return Course(known, mine, True, begins, follows.held, values)
     return Course(known, mine, follows.holds, begins, values=values)
-
-
-def _of_state(case: Case, name: str, x: Scalar, values: Mapping[Node, Scalar], *, any_start: bool) -> Course:
-    """A state as a function of time put into its rate, or its rate put into the rate's own.
-
-    Undecided where what else moves is left.
-    """
-    symbols, scope = case.system.symbols, case.system.scope
-    z = scope.names[name.removesuffix("'")]
-    assert type(z) is Node, "a state is a symbol"
-    inputs = {node: case.system.inputs[n] for n, node in symbols.inputs.items()}
-    (rate,) = substituted((scope.names[f"{z.name}'"],), inputs)
-    if name.endswith("'"):
-        known, given = {}, rate - x
-        left = derivative(rate, z) * x + derivative(rate, symbols.t) - derivative(x, symbols.t)
-    else:
-        known, given = {z: x}, z - x
-        left = rate - derivative(x, symbols.t)
-    (given,) = substituted(substituted((given,), case.start), values) if values else (given,)
-    begins = True if any_start else case.starts_at_zero(given)
-    (left,) = substituted((left,), {**known, **values})
-    others = [other for other in (*symbols.x, *case.forced) if other is not z]
-    if depends_on(rate, others) or depends_on(left, (z,)):
-        return Course(known, (), None, begins, values=values)
-    return Course(known, (left,), is_zero_everywhere(case.system, left).holds, begins, values=values)
-
-
-def of_the_start(case: Case, course: Course) -> str:
-    """The differences at the start, in words: x is 0 there, and not x0."""
-    reported, at = [], {case.system.symbols.t: 0}
-    for x, value in course.known.items():
-        if x in case.start and not x.name.endswith("''"):
-            mine, own = substituted((value, case.start[x]), at)
-            if not case.starts_at_zero(x - mine):
-                texts = (short_text(y, case.system.scope.positive) or "another one" for y in (mine, own))
-                reported.append("{} is {}, and not {}".format(x.name, *texts))
-    return " and ".join(reported)
 
 
 def _constants(case: Case) -> tuple[Node, ...]:

@@ -280,7 +280,7 @@ def test_the_symbol_and_the_remark_of_a_state_stand_wherever_its_name_does():
     """In LaTeX by its symbol, with a dot for the rate; in code with unit and remark."""
     equations = eomgen.derive(eomgen.loads(BLOCKED))
     assert r"\dot{I}_{c} &=" in equations.render("latex")
-    assert "current of a coil" in "".join(map(str, eomgen.codegen(equations.model, "c").files.values()))
+    assert "current of a coil" in "".join(map(str, eomgen.generate(equations.model, ("c",)).texts.values()))
 
 
 def test_sensitivities_follow_states_through_a_run_and_at_rest():
