@@ -522,6 +522,10 @@ class Drawing:
             joint |= {"stiffness": "kt" if turning else "k", "rest": 0.1, "damping": "ct" if turning else "c"}
             if self.levels["units"] != "none":
                 joint["rest"] = {"value": 0.1, "unit": "rad" if turning else "m"}
+        if extra == "stops":  # wide: a run within them moves as one without
+            several = {"planar": ("x", "angle"), "cylindrical": ("displacement", "angle")}.get(how, ())
+            wide = [-1000, "inf"]
+            joint |= {"limits": dict.fromkeys(several, wide) if several else wide, "restitution": 0.3}
         if extra == "armature":
             joint["armature"] = "I/2" if how in ("revolute", "screw") else "m/2"
         if extra == "drive":
@@ -617,7 +621,7 @@ class Drawing:
         how = self.levels["contact"]
         if how == "none":
             return
-        x = self.coordinate("p1", "length", 0.0, {"open": 0.2, "sticking": 0.0}.get(how, 0.8))
+        x = self.coordinate("p1", "length", 0.0, {"open": 0.2, "bouncing": 0.2, "sticking": 0.0}.get(how, 0.8))
         down = self.v(0, "-g") if self.plane else [0, 0, "-g"]
         self.forces["own_weight"] = {"kind": "gravity", "acceleration": down, "bodies": ["puck"]}
         if how == "ending":
@@ -640,7 +644,7 @@ class Drawing:
             scale = 100.0 if isinstance(old, dict) and old.get("unit") == "cm" else 1.0
             self.coordinates["p1"] = {**old, "speed": round(4.4 * scale, 6)}
             return
-        y = self.coordinate("p2", "length", 0.06 if how == "open" else 0.0)
+        y = self.coordinate("p2", "length", 0.06 if how in ("open", "bouncing") else 0.0)
         place: list = [x, y]
         normal: list = [0, 1]
         if not self.plane:
@@ -654,6 +658,8 @@ class Drawing:
             "normal": normal,
             "unilateral": True,
         }
+        if how == "bouncing":
+            constraint["restitution"] = 0.5
         if how in ("sliding", "sticking"):
             constraint["friction"] = "mu"
         if how == "sticking":
