@@ -45,10 +45,11 @@ from eomgen.model.fields import (  # noqa: E402
 from eomgen.model.joints.base import Turned  # noqa: E402
 from eomgen.model.joints.path import PathPiece  # noqa: E402
 from eomgen.model.kinds import (  # noqa: E402
+    HingeFriction,
     LimitsRule,
-    PushFriction,
     ReactionSymbolsRule,
     Resistance,
+    SlideFriction,
     TurnFriction,
 )
 from eomgen.model.model import Model  # noqa: E402
@@ -97,8 +98,9 @@ TABLES: Mapping[str, type[Any]] = {
     "bodies": Body,
     "pieces": Piece,
     "friction": Resistance,
-    "friction of a turn": TurnFriction,
-    "friction of a slide": PushFriction,
+    "friction of a hinge": HingeFriction,
+    "friction of a slide": SlideFriction,
+    "friction of a screw": TurnFriction,
     "track": Track,
     "circle": Circle,
     "wrap": Wrap,

@@ -29,7 +29,7 @@ from eomgen.documents.reading import (
 from eomgen.documents.statements import Equation, Formula, Meaning, Omitted, Piece, Prose, Statement, Step, prose
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, System
-from eomgen.mechanics.free_bodies import FrictionContact
+from eomgen.mechanics.free_bodies import FrictionContact, SystemFriction
 from eomgen.symbolic.exact import book_form, common_factor, readable, simplest
 from eomgen.symbolic.expression import (
     ROOT_OF_SUM,
@@ -352,6 +352,10 @@ WORDS = (
     "Friction acts against the sliding and grows with the normal reaction of its own contact, which the balance of the "
     "bodies gives together with the accelerations:"
 )
+ONE_VALUE = (
+    "It has one value while the spectral radius of D is below 1, D the growth of the force of each joint with that of "
+    "every other:"
+)
 
 
 @dataclass(frozen=True)
@@ -393,10 +397,32 @@ def friction_of(equations: EquationsOfMotion, reader: Reader) -> FrictionTerms:
             statements += [Formula((normal, value)), *_along(reader, letters, contact, frictions, senses)]
         row = contact.along if contact.normals else substituted(contact.force, senses)
         forces = [total + share * normal for total, share in zip(forces, row, strict=True)]
-    step = Step("friction", "Friction", (prose(WORDS), *statements))
+    step = Step("friction", "Friction", (prose(WORDS), *statements, *_uniqueness(reader, system)))
     return FrictionTerms(
         tuple(reader.short_with_symbols(forces)), tuple(definitions), step, _solved_sliding(reader, equations)
     )
+
+
+def _uniqueness(reader: Reader, system: System) -> list[Prose | Formula]:
+    """The condition under which friction that depends on the forces of joints has one value."""
+    joints = [link.joint for link in system.motion.links if link.joint is not None]
+    if not any(law.coulomb is not None for joint in joints for _, _, law in joint.frictions):
+        return []
+    graph = system.scope.graph
+    D = SystemFriction(system).feedback()
+    entries = [("_".join(dict.fromkeys(("D", r, s))), x) for r, row in D.items() for s, x in row.items()]
+    positive = system.scope.positive
+    shown = [
+        (graph.symbol(name), book_form(readable_value(reader, _while_sliding(x)), Work.ENTRY, positive))
+        for name, x in entries
+        if not is_zero(x)
+    ]
+    return [prose(ONE_VALUE), *map(Formula, shown)] if shown else []
+
+
+def _while_sliding(x: Scalar) -> Scalar:
+    """The scalar where each joint slides: the squares of signs are 1."""
+    return substituted((x,), {node: 1 for node in order((x,)) if node.op == "sign"})[0]
 
 
 def _of_round(
@@ -404,7 +430,8 @@ def _of_round(
 ) -> tuple[Scalar | Omitted, Formula]:
     """(the friction of bilateral contacts, that as a formula: F = factor sqrt(N_1^2 + N_2^2))."""
     factor, force = substituted((contact.factor, letters.balance.given[contact.component]), senses)
-    size = sqrt(sum((letters.symbols[j] * letters.symbols[j] for j in contact.normals), start=0))
+    parts = [letters.symbols[j] for j in contact.normals]
+    size = function("abs", parts[0]) if len(parts) == 1 else sqrt(sum((N * N for N in parts), start=0))
     shown = reader.shown(force)
     return shown, Formula((letters.symbols[contact.component], readable_value(reader, factor) * size, shown))
 
@@ -433,6 +460,8 @@ def _normal(readings: Readings, j: int, equations: EquationsOfMotion, senses: Ma
 
 def _sliding(reader: Reader, x: Scalar) -> Scalar | None:
     """x while the one contact in it slides, sign^2 = 1; None where there are several, or x is long."""
+    if text_size(x) > TRIED:
+        return None
     for condition in conditions_in(x)[:1]:
         if_true, if_false = (_sliding(reader, decided(x, condition, holds)) for holds in (True, False))
         return None if if_true is None or if_false is None else condition.graph.select(condition, if_true, if_false)

@@ -11,6 +11,7 @@ from itertools import count
 from typing import TypeGuard
 
 from eomgen.documents.statements import Equation, Formula, Meaning, Omitted, Side, Statement, Step
+from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics import Scope
 from eomgen.symbolic.exact import (
@@ -109,7 +110,10 @@ class Reader:
 
     def _by_cases(self, x: Scalar, condition: Node) -> Scalar | None:
         """x where the condition holds, and where it does not, each in readable form."""
-        if_true, if_false = (self._read(decided(x, condition, holds)) for holds in (True, False))
+        try:
+            if_true, if_false = (self._read(decided(x, condition, holds)) for holds in (True, False))
+        except DerivationError:  # it has no value where that fails: friction that Newton's steps do not reach
+            return self._whole(x)
         if if_true is None or if_false is None:
             return None
         found = condition.graph.select(condition, if_true, if_false) if if_true is not if_false else if_true

@@ -25,7 +25,7 @@ class Contact:
         unilateral: it can end.
         friction: its law, or None.
         surface: it slides on a surface in space, in any direction: what slides has a speed, and no sense.
-        round: a bilateral contact on a line in space: N has two components, and no sign.
+        round: a bilateral contact on a line in space, or a joint with friction by its force: N has no sign.
         restitution: its coefficient; None: it does not rebound.
     """
 
@@ -112,7 +112,8 @@ class Connections:
                 free = getattr(joint, field).names & self.coordinates.keys() - given
                 if law.smooth is None and free:
                     name = joint.named_contact(body, field)
-                    yield Contact(name, joint.kind, False, law, of_joint=True, body=body, variable=k)
+                    loaded = law.coulomb is not None
+                    yield Contact(name, joint.kind, False, law, of_joint=True, body=body, variable=k, round=loaded)
 
     def _touching(self) -> Iterator[Contact]:
         for name, constraint in self.constraints.items():

@@ -180,8 +180,14 @@ def _needed(leaf: Leaf, names: Names) -> Dimension | None:
         return names.of(getattr(part, rule.same_as) or "")
     if getattr(rule, "works_on", ""):
         return _dimension("J").times(names.of(getattr(part, rule.works_on) or ""), -1)
-    unit = getattr(rule, "unit", None)
+    given = [slot.rule for slot in part.slots() if slot.name in like] if (like := _like(rule, part)) else [rule]
+    unit = getattr(given[0], "unit", None)
     return None if unit is None else _dimension(unit)
+
+
+def _like(rule: Any, part: Any) -> list[str]:
+    """The given field of the part whose unit a value has, where its rule names some."""
+    return [name for name in getattr(rule, "like", ()) if getattr(part, name) is not None][:1]
 
 
 def _diagnostic(catalog: Catalog, leaf: Leaf, clash: Clash, names: Names) -> Diagnostic:

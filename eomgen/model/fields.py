@@ -90,6 +90,7 @@ class FormulaRule(WholeRule):
         functions: of the motion, that may be called: x(bead.center).
         usually: effect of a value below zero that is hardly intended.
         in_own_unit: a plain number is in the unit that a coordinate declares.
+        like: fields of the part, of which one is given: the value is in its unit.
         same_as, works_on: the field of the part that names a coordinate: the value is one of it, or does work on it.
     """
 
@@ -104,6 +105,7 @@ class FormulaRule(WholeRule):
     same_as: str = ""
     works_on: str = ""
     in_own_unit: bool = False
+    like: tuple[str, ...] = ()
 
     def read(self, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> Any:
         if isinstance(raw, Mapping):

@@ -283,6 +283,25 @@ class TurnFriction(JointFriction):
 
 
 @dataclass(frozen=True, kw_only=True)
+class HingeFriction(TurnFriction):
+    """Dry friction of a hinge: of constant torque, or mu r |R| of the force R that it carries.
+
+    Args:
+        torque: T while it turns [N m].
+        coefficient: mu, with `radius` in place of `torque`.
+        radius: r of its pin [m].
+        static: the largest at rest, a torque or a coefficient as the other (None: the same).
+        smooth: v of - T tanh(s'/v), at which tanh reaches 76 %; None: it sticks and slips [rad/s].
+    """
+
+    torque: TorqueSize | None = None
+    coefficient: Friction | None = None
+    radius: Length | None = None
+    static: Annotated[Expression, FormulaRule(None, "nonnegative", like=("torque", "coefficient"))] | None = None
+    smooth: TurningSpeed | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
 class PushFriction(JointFriction):
     """Dry friction of constant force against a slide.
 
@@ -295,6 +314,23 @@ class PushFriction(JointFriction):
     amount: ClassVar[str] = "force"
     force: ForceSize | None = None
     static: ForceSize | None = None
+    smooth: SlidingSpeed | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class SlideFriction(PushFriction):
+    """Dry friction of a slide: of constant force, or mu |N| of the force N across it.
+
+    Args:
+        force: F while it slides [N].
+        coefficient: mu, in place of `force`.
+        static: the largest at rest, a force or a coefficient as the other (None: the same).
+        smooth: v of - F tanh(s'/v), at which tanh reaches 76 %; None: it sticks and slips [m/s].
+    """
+
+    force: ForceSize | None = None
+    coefficient: Friction | None = None
+    static: Annotated[Expression, FormulaRule(None, "nonnegative", like=("force", "coefficient"))] | None = None
     smooth: SlidingSpeed | None = None
 
 

@@ -60,8 +60,10 @@ def certify(
     if equations.system.elimination is not None:
         checks.append(trials.eliminated_rows())
     checks += [trials.free_bodies(), *trials.accelerations()]
+    if trials.rubs:
+        checks.append(trials.friction())
     if SystemFriction(equations.system).exists:
-        checks += [trials.friction(), *trials.pushes()]
+        checks += trials.pushes()
     checks += trials.begun_contacts() if begins else ()
     checks += [
         *trials.tensors(),

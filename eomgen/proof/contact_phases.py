@@ -496,15 +496,20 @@ def _laws(system: System, name: str) -> Iterator[Resistance | None]:
     if name in model.constraints:
         yield getattr(model.constraints[name], "friction", None)
         return
-    yield from (piece.friction for piece in getattr(model.bodies[name].joint, "pieces", ()))
+    joint: Any = model.bodies[name].joint
+    yield from (piece.friction for piece in getattr(joint, "pieces", ()))
+    yield from (law for _, _, law in joint.frictions)
 
 
 def _declared(proof: InNumbers, law: Resistance | None, speed: Any, slides: bool) -> Any:
     """|F|/|N|"""
     if law is None:
         return 0
-    size = abs(proof.one(proof.system.scope.value(law.viscous if law.coulomb is None else law.coulomb)))
-    return size * speed if law.coulomb is None else size * slides
+    if getattr(law, "smooth", None) is not None:
+        slides = fifty_digits().functions["tanh"](speed / proof.one(proof.system.scope.value(law.smooth)))
+    if law.coulomb is not None:
+        return abs(proof.one(proof.system.scope.value(law.coulomb))) * slides
+    return abs(proof.one(proof.system.scope.value(law.viscous))) * speed
 
 
 def leaving_at_start(equations: EquationsOfMotion) -> str:

@@ -293,7 +293,7 @@ class Trials:
             for name, law in laws:
                 if not self._holds(law, state):
                     return f"the friction of '{name}' is not that of its normal force"
-            for name, factor, sliding in SystemFriction(self.equations.system).named:
+            for name, factor, sliding in (*SystemFriction(self.equations.system).named, *self._of_joints):
                 mode = self.equations.system.modes.get(name, ContactMode())
                 v = sliding if mode.sense is None else mode.sense
                 speed, power, factor_at = evaluate((v, mode.push * factor * v, factor), state, fifty_digits())
@@ -304,6 +304,22 @@ class Trials:
             return ""
 
         return self._at_states("friction takes power from sliding bodies", "50 digits", check, moving=True)
+
+    @property
+    def rubs(self) -> bool:
+        """True if anything has friction of which the power can be looked at."""
+        return SystemFriction(self.equations.system).exists or bool(self._of_joints)
+
+    @property
+    def _of_joints(self) -> list[tuple[str, Scalar, Scalar]]:
+        """(name, friction, rate) of every joint with friction of constant size that does not stick."""
+        system, found = self.equations.system, []
+        for effort in system.loads.efforts:
+            link = system.motion.link(effort.body)
+            names = [link.joint.named_contact(link.name, x) for k, x, _ in link.joint.frictions if k == effort.variable]
+            if not is_zero(effort.friction):
+                found.append((names[0], effort.friction, link.s_rate[effort.variable]))
+        return found
 
     def pushes(self) -> Iterable[Check]:
         """A contradiction where friction is taken with another sign of N than the start has; else nothing."""

@@ -21,7 +21,7 @@ from eomgen.mechanics.dynamics import (
     Valueless,
     WellPosed,
 )
-from eomgen.mechanics.free_bodies import Reactions, equations_of_motion
+from eomgen.mechanics.free_bodies import Reactions, SystemFriction, equations_of_motion
 from eomgen.mechanics.kinematics import Motion, SystemScene
 from eomgen.mechanics.start import Start
 from eomgen.model import Contact, Edge
@@ -38,7 +38,7 @@ from eomgen.simulation.contacts import Configuration, ContactEvents, ContactSign
 from eomgen.simulation.phase_functions import PhaseFunctions
 from eomgen.simulation.solvers import StateRate
 from eomgen.symbolic.expression import Node, depends_on, jacobian
-from eomgen.symbolic.numeric import tolerances
+from eomgen.symbolic.numeric import FLOAT, evaluate, tolerances
 
 Fed = Callable[[np.ndarray, float, np.ndarray], np.ndarray]
 """(p, t, x) -> p at a state"""
@@ -159,7 +159,22 @@ class PhaseModel:
         with np.errstate(all="ignore"):
             after = tolerances.COMPUTED * max(1.0, abs(t)) * np.nan_to_num(self.rate(t, x))
         found = (Valueless.in_state(self.system, self._values(t, here)) for here in (x, x + after))
-        return next((each for each in found if each is not None), None)
+        return next((each for each in found if each is not None), None) or self._jammed(t, x)
+
+    def _jammed(self, t: float, x: np.ndarray) -> Valueless | None:
+        """Friction that grows with itself, so that it has several values or none; None where it has one."""
+        D = SystemFriction(self.system).feedback()
+        if not D:
+            return None
+        entries = tuple(D[r][s] for r in D for s in D)
+        rows = np.array(evaluate(entries, self._values(t, x), FLOAT)).reshape(len(D), len(D))
+        radius = float(np.max(np.abs(np.linalg.eigvals(rows)))) if np.all(np.isfinite(rows)) else 0.0
+        if radius < 1:
+            return None
+        rubbing = [contact for contact in self.contacts if contact.name in D]
+        names = ", ".join(contact.words for contact in rubbing)
+        what = f"the friction of {names} has no single value: it grows by {radius:.4g} of itself, not by less than 1"
+        return Valueless(rubbing[0].declared_at, what)
 
     def overlarge(self, t: float, x: np.ndarray) -> Valueless | None:
         """First quantity that is too large in a state to be calculated with; None where nothing is."""

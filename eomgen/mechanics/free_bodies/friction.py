@@ -24,7 +24,13 @@ from eomgen.mechanics.free_bodies.solution import (
     solution_of_balance,
     values_at_a_state,
 )
-from eomgen.mechanics.free_bodies.wrenches import Component, joint_friction, normals_of_round, sliding_friction
+from eomgen.mechanics.free_bodies.wrenches import (
+    Component,
+    is_of_whole_force,
+    joint_friction,
+    normals_of_round,
+    sliding_friction,
+)
 from eomgen.symbolic.exact import LinearSystem, Solution, ValuesAt, components, cramer
 from eomgen.symbolic.expression import (
     Fraction,
@@ -128,6 +134,15 @@ class SystemFriction:
         pairs = zip(solved.found, solved.normals, strict=True)
         return {contact.name: N for contact, N in pairs if contact.normals}
 
+    def feedback(self) -> dict[str, dict[str, Scalar]]:
+        """D_rs: how much the force on which the friction of r depends grows with |N| of s; {} without such friction.
+
+        The friction has one value while the spectral radius of D is below 1.
+        Raises:
+            DerivationError: as `with_friction`.
+        """
+        return _WithFriction(assembled_by_recursion(self.system)).feedback if self.round_symbols else {}
+
     def with_rest(self, scalars: Sequence[Scalar]) -> ScalarRow:
         """Scalars in which Coulomb's friction on surfaces, v/|v|, is 0 where v is, as sign(v) along a line is."""
         rows = [row for row in self.system.constraints.rows if row.shares and row.friction is not None]
@@ -163,10 +178,9 @@ class SystemFriction:
     def round_symbols(self) -> dict[str, Node]:
         """A symbol for |N| of every bilateral contact with friction, by its name."""
         on_lines = [row.constraint for row in self.system.constraints.rows if row.round and row.friction is not None]
-        if self.system.scope.model.space == "space":
-            on_lines += [
-                link.name for link in self.system.motion.links if joint_friction(self.system, link) is not None
-            ]
+        motion = self.system.motion
+        whole = [link for link in motion.links if is_of_whole_force(motion, link)]
+        on_lines += [link.name for link in whole if joint_friction(self.system, link) is not None]
         return {name: self.system.scope.graph.symbol(f"|N|({name})") for name in on_lines}
 
 
@@ -219,17 +233,36 @@ class _WithFriction:
     @cached_property
     def _sizes(self) -> dict[Node, Scalar]:
         """|N| of bilateral contacts, by its symbol."""
+        pairs = self._pairs
+        return sizes(pairs, self._values_at_a_state(pairs))
+
+    @cached_property
+    def _pairs(self) -> dict[Node, EqualPushes]:
+        """The components of N of each bilateral contact, linear in |N| of all, by the symbol of its |N|."""
         known = dict(zip(self.equations.symbols.a, self._values, strict=False)) | dict(
             zip(self._normals.values(), self._values[len(self._values) - len(self._single) :], strict=True)
         )
-        pairs = {
+        return {
             self._symbols[contact.name]: tuple(self._component(contact.name, j, known) for j in contact.normals)
             for contact in self.found
             if contact.normals
         }
+
+    def _values_at_a_state(self, pairs: Mapping[Node, EqualPushes]) -> ValuesAt:
         entries = [N for pair in pairs.values() for N in pair]
-        values = values_at_a_state(self.equations.system, substituted(entries, dict.fromkeys(pairs, 0)))
-        return sizes(pairs, values)
+        found: ValuesAt = values_at_a_state(self.equations.system, substituted(entries, dict.fromkeys(pairs, 0)))
+        return found
+
+    @property
+    def feedback(self) -> dict[str, dict[str, Scalar]]:
+        """D_rs = |dN_r/dP_s|, by the names of the contacts."""
+        pairs = self._pairs
+        names = {symbol: name for name, symbol in self._symbols.items()}
+        G = _slopes(pairs, tuple(pairs), self._values_at_a_state(pairs))
+        return {
+            names[r]: {names[s]: sqrt(inner(g, g)) for s, g in zip(pairs, row, strict=True)}
+            for r, row in zip(pairs, G, strict=True)
+        }
 
     def _component(self, name: str, j: int, known: dict[Node, Scalar]) -> Scalar:
         """A normal reaction, linear in |N| of all."""

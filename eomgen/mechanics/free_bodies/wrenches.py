@@ -268,12 +268,15 @@ def _joint_components(system: System, axes: Axes) -> list[Component]:
         pushes = _basis(axes, link, system)
         factor = joint_friction(system, link)
         along = () if factor is None else tuple(effects_at_joint(axes, link, *pushed_along(link, 0, 1)))
+        whole = factor is not None and is_of_whole_force(axes.motion, link)
         for number, (label, force, couple) in enumerate(pushes, start=1):
             effects = tuple(effects_at_joint(axes, link, force, couple))
-            friction = (FrictionShare("t", factor, along),) if label == "n" and factor is not None else ()
+            signed = label == "n" and factor is not None and not whole
+            friction = (FrictionShare("t", factor, along),) if signed and factor is not None else ()
             found.append(Component(link.name, "joint", label, number, effects, friction))
-        if factor is not None and not axes.plane:
-            found.append(Component(link.name, "joint", "t", len(pushes) + 1, along, bilateral_friction=factor))
+        if whole:
+            label = "friction" if link.joint.frictions else "t"
+            found.append(Component(link.name, "joint", label, len(pushes) + 1, along, bilateral_friction=factor))
         for k in range(len(link.s)):
             if (driver := driven.get((link.name, k))) is not None:
                 effects = tuple(effects_at_joint(axes, link, *pushed_along(link, k, 1)))
@@ -373,9 +376,13 @@ def _normals(axes: Axes, link: BodyLink, forces: list[Vector]) -> list[tuple[str
 
 
 def joint_friction(system: System, link: BodyLink) -> Scalar | None:
-    """The friction of a path along it for a unit of its normal reaction; None without friction, and elsewhere."""
-    pieces = getattr(link.joint, "pieces", ())
+    """The friction of a path, slide or hinge along it for a unit of the force that it carries; None without, or while
+    it sticks."""
     value, mode = system.scope.value, system.modes.get(link.name, ContactMode())
+    for k, _, law in () if link.joint is None else link.joint.frictions:
+        if law.coulomb is not None:
+            return None if mode.sense == 0 else mode.joint_factor(law, value, link.s_rate[k]) * value(law.coulomb)
+    pieces = getattr(link.joint, "pieces", ())
     factors = [mode.friction_factor(piece.friction, value, link.s_rate[0]) for piece in pieces]
     if all(factor is None for factor in factors):
         return None
@@ -383,6 +390,11 @@ def joint_friction(system: System, link: BodyLink) -> Scalar | None:
         link.s[0], value, [0 if factor is None else factor for factor in factors]
     )
     return friction
+
+
+def is_of_whole_force(motion: Motion, link: BodyLink) -> bool:
+    """True if the friction of a joint goes by the size of its force, which has no sign."""
+    return motion.scope.model.space == "space" or bool(link.joint is not None and link.joint.frictions)
 
 
 def sliding_friction(system: System, component: Component) -> tuple[Scalar, Scalar]:

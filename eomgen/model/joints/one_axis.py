@@ -32,14 +32,15 @@ from eomgen.model.kinds import (
     Direction,
     Displacement,
     ForceFormula,
+    HingeFriction,
     LinearDamping,
     LinearStiffness,
-    PushFriction,
     RestAngle,
     Restitution,
     RestLength,
     RotorInertia,
     SleeveLimits,
+    SlideFriction,
     SlideInertia,
     SlideLimits,
     SpaceDirection,
@@ -123,7 +124,7 @@ class Revolute(AxisJoint):
         stiffness, damping, rest, armature: - k (s - rest), - d s', and armature s'^2 / 2 to T.
         limits: [least, largest] of the angle, "inf" for none: rigid stops, in the unit of its coordinate.
         restitution: of the stops: with this share of its speed it rebounds, 0 to 1 (None: not at all).
-        friction: dry: { torque = T }, with `static`, the largest at rest, or `smooth`.
+        friction: dry: { torque = T }, or { coefficient = mu, radius = r }; with `static`, the largest at rest, or `smooth`.
     """
 
     limited: ClassVar[tuple[str, ...]] = ("angle",)
@@ -137,7 +138,7 @@ class Revolute(AxisJoint):
     armature: RotorInertia | None = None
     limits: AngleLimits | None = None
     restitution: Restitution | None = None
-    friction: Annotated[TurnFriction, PartRule(TurnFriction)] | None = None
+    friction: Annotated[HingeFriction, PartRule(HingeFriction)] | None = None
 
     def turns(self) -> tuple[Expression, ...]:
         return (self.angle,)
@@ -189,7 +190,7 @@ class Prismatic(AxisJoint):
         stiffness, damping, rest, armature: - k (s - rest), - d s', and armature s'^2 / 2 to T.
         limits: [least, largest] of the displacement, "inf" for none: rigid stops, in the unit of its coordinate.
         restitution: of the stops: with this share of its speed it rebounds, 0 to 1 (None: not at all).
-        friction: dry: { force = F }, with `static`, the largest at rest, or `smooth`.
+        friction: dry: { force = F }, or { coefficient = mu }; with `static`, the largest at rest, or `smooth`.
     """
 
     limited: ClassVar[tuple[str, ...]] = ("displacement",)
@@ -204,7 +205,7 @@ class Prismatic(AxisJoint):
     armature: SlideInertia | None = None
     limits: SlideLimits | None = None
     restitution: Restitution | None = None
-    friction: Annotated[PushFriction, PartRule(PushFriction)] | None = None
+    friction: Annotated[SlideFriction, PartRule(SlideFriction)] | None = None
 
     def turns(self) -> tuple[Expression, ...]:
         return ()
