@@ -505,8 +505,9 @@ def _declared(proof: InNumbers, law: Resistance | None, speed: Any, slides: bool
     """|F|/|N|"""
     if law is None:
         return 0
-    if getattr(law, "smooth", None) is not None:
-        slides = fifty_digits().functions["tanh"](speed / proof.one(proof.system.scope.value(law.smooth)))
+    smooth = getattr(law, "smooth", None)
+    if smooth is not None:
+        slides = fifty_digits().functions["tanh"](speed / proof.one(proof.system.scope.value(smooth)))
     if law.coulomb is not None:
         return abs(proof.one(proof.system.scope.value(law.coulomb))) * slides
     return abs(proof.one(proof.system.scope.value(law.viscous))) * speed

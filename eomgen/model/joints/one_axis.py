@@ -124,7 +124,7 @@ class Revolute(AxisJoint):
         stiffness, damping, rest, armature: - k (s - rest), - d s', and armature s'^2 / 2 to T.
         limits: [least, largest] of the angle, "inf" for none: rigid stops, in the unit of its coordinate.
         restitution: of the stops: with this share of its speed it rebounds, 0 to 1 (None: not at all).
-        friction: dry: { torque = T }, or { coefficient = mu, radius = r }; with `static`, the largest at rest, or `smooth`.
+        friction: dry: { torque = T } or { coefficient = mu, radius = r }; `static`, the largest at rest; or `smooth`.
     """
 
     limited: ClassVar[tuple[str, ...]] = ("angle",)
@@ -190,7 +190,7 @@ class Prismatic(AxisJoint):
         stiffness, damping, rest, armature: - k (s - rest), - d s', and armature s'^2 / 2 to T.
         limits: [least, largest] of the displacement, "inf" for none: rigid stops, in the unit of its coordinate.
         restitution: of the stops: with this share of its speed it rebounds, 0 to 1 (None: not at all).
-        friction: dry: { force = F }, or { coefficient = mu }; with `static`, the largest at rest, or `smooth`.
+        friction: dry: { force = F } or { coefficient = mu }; `static`, the largest at rest; or `smooth`.
     """
 
     limited: ClassVar[tuple[str, ...]] = ("displacement",)
@@ -325,7 +325,7 @@ class Screw(AxisJoint):
         stiffness, damping, rest, armature: - k (s - rest), - d s', and armature s'^2 / 2 to T.
         limits: [least, largest] of the angle, "inf" for none: rigid stops, in the unit of its coordinate.
         restitution: of the stops: with this share of its speed it rebounds, 0 to 1 (None: not at all).
-        friction: dry: { torque = T }, with `static`, the largest at rest, or `smooth`.
+        friction: dry: { torque = T }; `static`, the largest at rest; or `smooth`.
     """
 
     limited: ClassVar[tuple[str, ...]] = ("angle",)
