@@ -236,7 +236,7 @@ class _WithFriction:
         pairs = self._pairs
         return sizes(pairs, self._values_at_a_state(pairs))
 
-    @cached_property
+    @property
     def _pairs(self) -> dict[Node, EqualPushes]:
         """The components of N of each bilateral contact, linear in |N| of all, by the symbol of its |N|."""
         known = dict(zip(self.equations.symbols.a, self._values, strict=False)) | dict(
