@@ -297,3 +297,12 @@ def test_a_model_is_the_same_as_a_part_of_another(path, tmp_path):
         assert [*found] == [f"P_{name}" for name in told]
         for name, value in told.items():
             assert found[f"P_{name}"] == (None if value is None else pytest.approx(value, rel=1e-8, abs=1e-9)), name
+
+
+def test_a_table_of_a_part_is_called_by_its_name(tmp_path):
+    """And a function of a formula, sin(q), stays one, where a coordinate is called sin_ or q."""
+    part = LEG.replace("[coordinates]", "tables.M = { at = [0, 1], values = [0, 2] }\n\n[coordinates]").replace(
+        'height = "z(limb{n}.end)"', 'height = "z(limb{n}.end)"\nlaw = "M(q1) + M\'(q1) + sin(q1)"'
+    )
+    found = eomgen.solve(eomgen.load(read(tmp_path, HEXAPOD, leg=part)))
+    assert found["leg2_law"].value == pytest.approx(0.2 + 2 + math.sin(0.1))

@@ -24,7 +24,7 @@ Drafting = Callable[[Mapping[str, Any], list[Diagnostic]], Any]
 """reads tables as a model, unchecked"""
 
 _NAME = re.compile(r"[^\W\d]\w*")
-_WORD = re.compile(r"(?<![\w.])([^\W\d]\w*)(?!\w*\()(?:\.([^\W\d]\w*))?")
+_WORD = re.compile(r"(?<![\w.])([^\W\d]\w*)(?:\.([^\W\d]\w*))?(?=(?P<call>'*\s*\()?)")
 
 
 @dataclass(frozen=True)
@@ -298,7 +298,7 @@ class _Renamed:
 
         def word(found: re.Match[str]) -> str:
             kept = any(a <= found.start() < b for a, b in own)
-            if kept or found[1] in hidden:
+            if kept or found[1] in hidden or (found["call"] and found[1] not in self._table("tables")):
                 return found[0]
             side = found[2]
             if side and found[1] in self._table("constraints") and side in self._table("bodies"):  # B.beam: of its two

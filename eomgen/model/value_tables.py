@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar
 
 from eomgen.frozen import dataclass
 from eomgen.model.diagnostics import Decimal, Diagnostic, shown
-from eomgen.model.fields import UNIT, TextRule, WholeRule, WrittenEquation, read_text
+from eomgen.model.fields import UNIT, Alternatives, TextRule, WholeRule, WrittenEquation, read_text
 from eomgen.model.kinds import Text
 from eomgen.model.part import Part, PartRule
 from eomgen.model.positions import DocumentPath
@@ -122,6 +122,8 @@ def with_functions(raw: Any, functions: Mapping[str, TableFunction], found: list
         if isinstance(value, Mapping):
             kept = (TABLES, *_NOT_TEXT) if not path else _NOT_TEXT
             return {key: x if key in kept else read(x, (*path, key)) for key, x in value.items()}
+        if isinstance(value, Alternatives):  # references, in which no function is called
+            return value
         if isinstance(value, (list, tuple)):
             return type(value)(read(x, (*path, k)) for k, x in enumerate(value))
         if not isinstance(value, str) or isinstance(value, Decimal) or not calls.search(value):
