@@ -81,6 +81,9 @@ class Moving:
             return found
         if function in ty.FUNCTIONS:
             return ty.FUNCTIONS[function](*(formulas.evaluated(x, self.name, self.call) for x in trees))
+        if function.rstrip("'") in self.model.tables:
+            f = self.model.table(function)
+            return jet(formulas.evaluated(trees[0], self.name, self.call)).of(*f)
         return self.motion(function, [x[1] for x in trees])
 
     def motion(self, function: str, names: list[str]) -> Any:
@@ -196,6 +199,7 @@ class Declared:
         }
         self.speeds = {name: {"rate": x} if isinstance(x, str) else x for name, x in d.get("speeds", {}).items()}
         self.inputs = d.get("inputs", {})
+        self.tables = d.get("tables", {})
         self.points = d.get("points", {})
         self.bodies = {name: {**body, "name": name} for name, body in d.get("bodies", {}).items()}
         self.constraints = d.get("constraints", {})
@@ -208,6 +212,31 @@ class Declared:
             x = self._declared[name]
             self.parameters[name] = self.number(x)
         return self.parameters[name]
+
+    def table(self, function: str) -> tuple[Any, Any, Any]:
+        """(f, f', f'') of a table of values, with primes its derivatives, of SI and in SI."""
+        from scipy.interpolate import CubicSpline, PchipInterpolator
+
+        name = function.rstrip("'")
+        declared, first = self.tables[name], len(function) - len(name)
+        x = np.array(declared["at"]) * formulas.factor(declared.get("at_unit", "1"))
+        y = np.array(declared["values"]) * formulas.factor(declared.get("unit", "1"))
+        way = declared.get("between", "pchip")
+        curve = PchipInterpolator(x, y) if way == "pchip" else CubicSpline(x, y)
+
+        def at(t: float, k: int) -> float:
+            inside = x[0] <= t <= x[-1]
+            if way == "linear":
+                j = min(max(int(np.searchsorted(x, t, side="right")) - 1, 0), len(x) - 2)
+                slope = (y[j + 1] - y[j]) / (x[j + 1] - x[j]) if inside else 0.0
+                return float(np.interp(t, x, y)) if k == 0 else slope if k == 1 else 0.0
+            end = t if inside else x[0] if t < x[0] else x[-1]
+            if inside or k == 1:
+                return float(curve(end, k))
+            return float(curve(end) + curve(end, 1) * (t - end)) if k == 0 else 0.0
+
+        f, d, dd = (np.vectorize(lambda t, k=k: at(t, k), otypes=[float]) for k in range(first, first + 3))
+        return f, d, dd
 
     def number(self, declared: Any) -> float:
         """A number of parameters alone."""

@@ -78,6 +78,7 @@ class Drawing:
         self.constraints: dict[str, dict] = {}
         self.forces: dict[str, dict] = {}
         self.inputs: dict[str, Any] = {}
+        self.tables: dict[str, Any] = {}
         self.speeds: dict[str, Any] = {}
         self.outputs: dict[str, Any] = {}
         self.host: str | None = None
@@ -737,8 +738,21 @@ class Drawing:
                 "coordinate": q,
                 "value": f"-c*{q}'" if unit else f"-ct*{q}' + {strength}*d",
             },
+            "values": {"kind": "force", "point": point, "force": self.v(f"K_{name}({q})", f"K_{name}'({q})/2", "F0/3")},
             "none": None,
         }[how]
+        if how == "values":
+            declared = self.coordinates[q]
+            at_unit = declared.get("unit") if isinstance(declared, dict) else None
+            scale = {"deg": 180 / math.pi, "cm": 100.0}.get(at_unit or "", 1.0)
+            at = [round(x * scale, 3) for x in (-0.8, 0.1, 0.9, 2.0)]
+            way = rng.choice(({}, {"between": "cubic"}, {"between": "linear"}))
+            self.tables[f"K_{name}"] = {"at": at, "values": [-2.5, 1, 2.5, 7], **way}
+            if at_unit:
+                self.tables[f"K_{name}"] |= {"at_unit": at_unit}
+            if self.levels["units"] == "si" and at_unit:
+                made["force"][1] = made["force"][1].replace("/2", "*d/2" if unit else "/2")
+                self.tables[f"K_{name}"] |= {"unit": "N"}
         if made is None:
             return
         if how == "distributed" and body not in pointed:
@@ -891,6 +905,7 @@ class Drawing:
             "coordinates": self.coordinates,
             "speeds": self.speeds,
             "inputs": self.inputs,
+            "tables": self.tables,
             "points": self.points,
             "bodies": self.bodies,
             "constraints": self.constraints,

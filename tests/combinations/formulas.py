@@ -108,7 +108,7 @@ def _atom(tokens: list, i: int) -> tuple[Any, int]:
             a, i = _sum(tokens, i)
             arguments.append(a)
             i += tokens[i] == ("op", ",")
-        return ("call", token[1], tuple(arguments)), i + 1
+        return ("call", token[1] + "'" * token[2], tuple(arguments)), i + 1
     if token[0] == "name":
         return token, i + 1
     raise ValueError(f"unexpected {token}")
