@@ -7,12 +7,26 @@ from dataclasses import field, replace
 from typing import Any
 
 from eomgen.documents.languages import OURS, Catalogue, catalogue
-from eomgen.documents.statements import Equation, Lines, Meaning, Quantity, Statement, Step, Table
+from eomgen.documents.statements import (
+    Equation,
+    Lines,
+    Listing,
+    Matrix,
+    Meaning,
+    Name,
+    Partial,
+    Quantity,
+    Rate,
+    Statement,
+    Step,
+    Table,
+    parts_of,
+)
 from eomgen.errors import Problem, UsageError
 from eomgen.frozen import Pickled, dataclass
 from eomgen.model import Model, Taken, nearest
 from eomgen.proof import Certificate
-from eomgen.symbolic.expression import Graph, Node, Scalar
+from eomgen.symbolic.expression import AS_WRITTEN, Graph, Node, Scalar, TableFunction, order, parse, sampled_of
 from eomgen.symbolic.print import Notation, Symbol
 
 DISTRUST = "the certificate FAILS: do not trust this result"
@@ -228,3 +242,30 @@ def notation_of(model: Model) -> Notation:
         if constraint.symbol is not None
     }
     return Notation(symbols, indices | {name: letter.tex for name, letter in constraints.items() if letter is not None})
+
+
+def tables_called(document: Document) -> dict[str, TableFunction]:
+    """The tables of values that the formulas of a document call, and their derivatives, by name."""
+    found: dict[str, TableFunction] = {}
+    statements = (statement for step in document.steps for statement in step.statements)
+    parts: list[Any] = []
+    for statement in statements:
+        parts += parts_of(statement)
+        exact = [row.quantity.exact or "" for row in statement.rows] if isinstance(statement, Listing) else []
+        for text in filter(None, exact):
+            code = parse(text, longest=len(text), tables=AS_WRITTEN).code
+            found |= {what.name: TableFunction(what) for kind, what in code if kind == "sampled"}
+    while parts:
+        part = parts.pop()
+        if isinstance(part, Node):
+            called = (sampled_of(x.args[1]) for x in order((part,)) if x.op == "sampled")
+            found |= {sampled.name: TableFunction(sampled) for sampled in called if sampled.called}
+        elif isinstance(part, (Name, Partial, Rate)):
+            parts.append(part.of if isinstance(part, (Partial, Rate)) else part.by)
+        elif isinstance(part, Matrix):
+            parts += [entry for row in part.rows for entry in row]
+    plain = {name.rstrip("'"): table for name, table in found.items() if "'" not in name}
+    for name, table in plain.items():
+        found.setdefault(f"{name}'", table.rate)
+        found.setdefault(f"{name}''", table.rate.rate)
+    return found

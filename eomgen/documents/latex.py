@@ -33,7 +33,7 @@ from eomgen.documents.statements import (
     parts_of,
     prose,
 )
-from eomgen.symbolic.expression import Graph, Node, Scalar, order, parse
+from eomgen.symbolic.expression import AS_WRITTEN, Graph, Node, Scalar, order, parse
 from eomgen.symbolic.print import PAPER, Notation, Set, SetLine, Setter, latex_escaped
 
 name = "latex"
@@ -262,7 +262,7 @@ def quantity_sides(graph: Graph, found: Quantity) -> tuple[Side, ...]:
 
 def _read_back(graph: Graph, exact: str) -> Side:
     """Formula that a text of the grammar states."""
-    expression = parse(exact, longest=len(exact))
+    expression = parse(exact, longest=len(exact), tables=AS_WRITTEN)
     symbols = {name: graph.symbol(name) for kind, name in expression.code if kind == "name"}  # as they stand in it
     read: Scalar = expression.evaluate(symbols | {"pi": graph.pi})
     return read

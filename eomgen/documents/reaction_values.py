@@ -42,6 +42,7 @@ from eomgen.mechanics.free_bodies import (
 from eomgen.model import PointForce, ReactionSymbols
 from eomgen.symbolic.exact import book_form, never_vanishes
 from eomgen.symbolic.expression import (
+    AS_WRITTEN,
     Matrix,
     Node,
     Scalar,
@@ -660,7 +661,12 @@ class PrintedReactions:
 
     def laws_in(self, texts: Iterable[str]) -> dict[str, str]:
         """{psi': law, psi'': law} of the names of driven rates and accelerations that stand in formulas."""
-        names = {name for text in texts for kind, name in parse(text, longest=len(text)).code if kind == "name"}
+        names = {
+            name
+            for text in texts
+            for kind, name in parse(text, longest=len(text), tables=AS_WRITTEN).code
+            if kind == "name"
+        }
         return {
             x.name: to_text(book_form(law)) for x, law in self.equations.system.scope.laws.items() if x.name in names
         }

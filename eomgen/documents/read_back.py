@@ -16,7 +16,7 @@ from functools import cached_property
 from random import Random
 from typing import Any
 
-from eomgen.documents.document import Document
+from eomgen.documents.document import Document, tables_called
 from eomgen.documents.pages_read import (
     GREEK_LETTERS,
     PAGES,
@@ -61,7 +61,7 @@ from eomgen.documents.statements import (
 from eomgen.errors import ExpressionError
 from eomgen.frozen import dataclass
 from eomgen.proof import Check, checked, differing, unchecked
-from eomgen.symbolic.expression import LONGEST, Graph, Node, Scalar, TableFunction, order, parse, sampled_of
+from eomgen.symbolic.expression import AS_WRITTEN, LONGEST, Graph, Node, Scalar, TableFunction, order, parse, sampled_of
 from eomgen.symbolic.numeric import READ_BACK, NoValue, evaluate, fifty_digits, tolerances
 from eomgen.symbolic.print import Notation
 
@@ -216,7 +216,7 @@ class PageComparison:
     @cached_property
     def tables(self) -> dict[str, TableFunction]:
         """The tables of values that its formulas call, with primes where one is differentiated."""
-        return _tables_in(self.document)
+        return tables_called(self.document)
 
     def checks(self, wanted: Sequence[Wanted], blocks: Sequence[PageBlock]) -> Iterator[Check]:
         """Checks that each block of the page is the required one; with unmade checks of what could not be read."""
@@ -531,32 +531,11 @@ def _names_in(document: Document) -> list[str]:
             for row in statement.rows:
                 if row.quantity.exact is not None:
                     exact = row.quantity.exact
-                    code = parse(exact, longest=len(exact), tables=_tables_in(document)).code
+                    code = parse(exact, longest=len(exact), tables=AS_WRITTEN).code
                     found |= {name: None for kind, name in code if kind == "name" and name != "pi"}
         for part in parts_of(statement):
             found |= dict.fromkeys(_names_of(part))
     return list(found)
-
-
-def _tables_in(document: Document) -> dict[str, TableFunction]:
-    """The tables of values that the formulas of a document call, and their derivatives, by name."""
-    found: dict[str, TableFunction] = {}
-    statements = (statement for step in document.steps for statement in step.statements)
-    parts: list[Any] = [part for statement in statements for part in parts_of(statement)]
-    while parts:
-        part = parts.pop()
-        if isinstance(part, Node):
-            called = (sampled_of(x.args[1]) for x in order((part,)) if x.op == "sampled")
-            found |= {sampled.name: TableFunction(sampled) for sampled in called if sampled.called}
-        elif isinstance(part, (Name, Partial, Rate)):
-            parts.append(part.of if isinstance(part, (Partial, Rate)) else part.by)
-        elif isinstance(part, Matrix):
-            parts += [entry for row in part.rows for entry in row]
-    plain = {name.rstrip("'"): table for name, table in found.items() if "'" not in name}
-    for name, table in plain.items():
-        found.setdefault(f"{name}'", table.rate)
-        found.setdefault(f"{name}''", table.rate.rate)
-    return found
 
 
 def _names_of(part: Any) -> list[str]:

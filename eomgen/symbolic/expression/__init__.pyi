@@ -30,6 +30,10 @@ from eomgen.symbolic.expression.derivatives import tangent as tangent
 # The derivatives of the outputs by each symbol, in a sweep for each, through what depends on it alone
 from eomgen.symbolic.expression.derivatives import tangents as tangents
 
+# The expression of a number or a text; a float means the decimal that it is written as (0.1 is 1/10)
+# A function that a model declares by a table of values
+from eomgen.symbolic.expression.formula import AS_WRITTEN as AS_WRITTEN
+
 # The functions of the grammar, and how many arguments each takes
 from eomgen.symbolic.expression.formula import NAMES as NAMES
 
@@ -42,9 +46,6 @@ from eomgen.symbolic.expression.formula import Instruction as Instruction
 
 # A name as an argument: of a constraint (`B`), a body, a point (`arm.end`), a member (`n1-n2`), a coordinate
 from eomgen.symbolic.expression.formula import Reference as Reference
-
-# The expression of a number or a text; a float means the decimal that it is written as (0.1 is 1/10)
-# A function that a model declares by a table of values
 from eomgen.symbolic.expression.formula import TableFunction as TableFunction
 from eomgen.symbolic.expression.formula import cos as cos
 from eomgen.symbolic.expression.formula import function as function

@@ -269,7 +269,7 @@ class _Parser:
         tables: Mapping[str, TableFunction] | None = None,
     ) -> None:
         _refuse_long(text, longest, named)
-        self.tables = tables or {}
+        self.tables: Mapping[str, TableFunction] = {} if tables is None else tables
         self.text, self.references, self.depth, self.named = text, references, 0, named
         self.parts: dict[str, int] = {}  # by name, at which height of the stack each stands
         self.height = 0
