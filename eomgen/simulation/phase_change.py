@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import islice, product
+from itertools import chain, islice, product
 from typing import Any
 
 import numpy as np
@@ -18,12 +18,13 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.free_bodies import Indeterminate
 from eomgen.mechanics.kinematics import ContactMode
 from eomgen.mechanics.start import Start
-from eomgen.model import Contact, Model, Table
+from eomgen.model import Contact, JointFriction, Model, Table
 from eomgen.simulation.contacts import Configuration, bounds_of, on_pieces, stopped_below
 from eomgen.simulation.event_location import Crossing
 from eomgen.simulation.phase_model import PhaseModel, Values, size_of_places, smallest_speed
 from eomgen.simulation.phase_models import OPEN, PhaseModels
 from eomgen.simulation.result import Impact
+from eomgen.symbolic.expression import gradient
 from eomgen.symbolic.numeric import tolerances
 
 
@@ -333,7 +334,14 @@ def settled(
     last: Configuration | None = None
     apart_one_by_one: Configuration | None = None
     refused: list[DerivationError] = []
-    for modes in islice(_choices(contacts, apart, sliding, before), MOST_TRIED):
+    resting = [c for c in contacts if c.size is not None and not sliding[c.name]]
+    first = next(_choices(contacts, apart, sliding, before))
+    gauss = _by_gauss(phase_models, t, values, Configuration(Table(first), Table(pieces)), resting)
+    tries = chain(gauss, islice(_choices(contacts, apart, sliding, before), MOST_TRIED))
+    rivals: list[Configuration] = []
+    static = [c for c in contacts if isinstance(c.friction, JointFriction) and not sliding[c.name]]
+    several_static = len(static) > 1 and any(getattr(c.friction, "static", None) is not None for c in static)
+    for k, modes in enumerate(tries):
         tried = Configuration(Table(modes), Table(pieces))
         phase = _made(phase_models, tried, refused)
         if phase is None or not agrees(phase, t, values, sliding=sliding, apart=apart):
@@ -345,12 +353,88 @@ def settled(
             if not phase_models.of(tried).rests(t, values):
                 raise undetermined
         if tried not in ended and not any(modes[name].closed for name in together):
-            return tried
+            if k < len(gauss) or not several_static:
+                return tried
+            rivals.append(tried)
         last = last or tried
         apart_one_by_one = apart_one_by_one or (None if tried in ended else tried)
+    if len(rivals) > 1:
+        raise _contradiction(rivals, static)
     if last is None and refused:
         raise _indeterminate(refused) or refused[0]
     return apart_one_by_one or last
+
+
+# -------- joints at rest --------------------------------------------------------------------------------------
+# Several joints with friction of constant size that rest at once: Gauss's principle.
+#
+#     tau = arg min of s''(tau) . tau / 2 over |tau_k| <= T_k,    s'' = b + G tau,    G = D M^-1 D^T, closed rows held
+#
+# has one solution where static friction is kinetic. Where it is above, what breaks loose by its static friction has
+# the kinetic one from then on, and the rest is solved again; what stuck sticks. The result may contradict itself: then
+# the combinations that agree are counted, and several are named.
+
+
+def _by_gauss(
+    phase_models: PhaseModels, t: float, values: Values, near: Configuration, resting: Sequence[Contact]
+) -> list[dict[str, ContactMode]]:
+    """The modes of all contacts with those of several resting joints by Gauss's principle; [] where fewer rest."""
+    if len(resting) < 2:
+        return []
+    modes = {**near.modes, **{c.name: ContactMode(sense=1) for c in resting}}
+    phase = phase_models.of(replace(near, modes=Table(modes)))
+    system, value = phase.system, phase.system.scope.value
+    rates = [system.motion.link(c.body).s_rate[c.variable] for c in resting]
+    u, n, k = system.symbols.u, len(resting), len(phase.equations.J)
+    sizes = tuple(value(x) for c in resting for x in (c.size, c.grip))
+    rows = (*phase.equations.M, *phase.equations.J, *(gradient(rate, u) for rate in rates))
+    scalars = (*sizes, *system.scope.with_accelerations(tuple(rates)), *(x for row in rows for x in row))
+    found = phase.functions.evaluated(np.array([t]), phase.state(values)[None, :], scalars)[0]
+    if not np.all(np.isfinite(found)):
+        return []
+    kinetic, static = found[: 2 * n].reshape(n, 2).T
+    M, J, D = np.split(found[3 * n :].reshape(-1, len(u)), [len(u), len(u) + k])
+    matrix = np.block([[M, -J.T], [J, np.zeros((k, k))]])
+    G = D @ np.linalg.lstsq(matrix, np.vstack([D.T, np.zeros((k, n))]), rcond=None)[0][: len(u)]
+    b = found[2 * n : 3 * n] + G @ kinetic
+    senses = held_together(G, b, kinetic, static)
+    return [{**near.modes, **{c.name: ContactMode(sense=s) for c, s in zip(resting, senses, strict=True)}}]
+
+
+def held_together(G: np.ndarray, b: np.ndarray, kinetic: np.ndarray, static: np.ndarray) -> list[int]:
+    """The sense in which each joint begins to move, 0 of those that stick: s'' = b + G tau of joints at rest.
+
+    Args:
+        G, b: n x n, n; symmetric, positive where nothing is redundant.
+        kinetic, static: the friction while it slides, and the largest at rest, n.
+    """
+    from scipy.optimize import lsq_linear
+
+    found, V = np.linalg.eigh((G + G.T) / 2)
+    kept = found > tolerances.SUMMED * max(float(np.max(np.abs(found), initial=0.0)), 1e-300)
+    root = np.sqrt(found[kept])
+    A, right = root[:, None] * V[:, kept].T, (V[:, kept].T @ b) / root
+    senses = np.zeros(len(b), dtype=int)
+    for _ in range(len(b)):
+        stuck = senses == 0
+        due = right - A[:, ~stuck] @ (senses * kinetic)[~stuck]
+        if not np.any(stuck) or not len(A):
+            break
+        bound = np.maximum(static[stuck], np.finfo(float).tiny)
+        tau = lsq_linear(A[:, stuck], -due, (-bound, bound), method="bvls").x
+        loose = np.abs(tau) >= (1 - tolerances.COMPUTED) * bound
+        if not np.any(loose):
+            break
+        senses[np.flatnonzero(stuck)[loose]] = -np.sign(tau[loose]).astype(int)
+    return senses.tolist()
+
+
+def _contradiction(rivals: Sequence[Configuration], resting: Sequence[Contact]) -> DerivationError:
+    """Error: static friction above kinetic leaves several ways in which joints at rest go on."""
+    words = {-1: "slips back", 0: "sticks", 1: "slips on"}
+    ways = [", ".join(f"'{c.name}' {words[way.modes[c.name].sense or 0]}" for c in resting) for way in rivals]
+    what = f"static friction above kinetic leaves {len(ways)} ways to go on from rest: {'; or '.join(ways)}"
+    return DerivationError(what, resting[0].declared_at, "leave out `static`, or start with a speed")
 
 
 def _closed(contact: Contact) -> ContactMode:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
@@ -10,6 +11,7 @@ from scipy.integrate import solve_ivp
 
 import eomgen
 from eomgen.errors import ModelError
+from eomgen.simulation.phase_change import held_together
 
 G = 9.81
 HINGE = """
@@ -236,3 +238,67 @@ joint = { kind = "revolute", angle = "q", friction = { coefficient = "mu", radiu
     assert result.phases[0].end == pytest.approx(3 / slows)
     assert result["q"][-1] == pytest.approx(9 / (2 * slows))
     assert result.certify().ok
+
+
+TWO = """
+eomgen = 1
+space = "plane"
+parameters = { m = 1, g = 9.81, l = 1 }
+forces.weight = { kind = "gravity", acceleration = [0, "-g"] }
+coordinates = { q1 = { start = Q1 }, q2 = { start = Q2 } }
+[bodies.upper]
+shape = { kind = "rod", mass = "m", length = "l" }
+joint = { kind = "revolute", angle = "q1", point = "start", turned = { angle = "-pi/2" }, friction = { ONE } }
+[bodies.lower]
+shape = { kind = "rod", mass = "m", length = "l" }
+joint = { kind = "revolute", on = "upper.end", angle = "q2", point = "start", friction = { OTHER } }
+"""
+
+
+def two(q1: float, q2: float, one: str, other: str) -> str:
+    return TWO.replace("Q1", str(q1)).replace("Q2", str(q2)).replace("ONE", one).replace("OTHER", other)
+
+
+def consistent(M, f, kinetic, static) -> list[tuple[int, ...]]:
+    """Every combination of slip and stick that agrees with M a = f + tau, |tau| <= T_s, tau = - s T_k, s a >= 0."""
+    found = []
+    for senses in itertools.product((0, 1, -1), repeat=len(f)):
+        s = np.array(senses)
+        free = s != 0
+        a = np.zeros(len(f))
+        a[free] = np.linalg.solve(M[np.ix_(free, free)], (f - s * kinetic)[free])
+        tau = M @ a - f
+        if np.all(np.abs(tau[~free]) <= static[~free]) and np.all(s[free] * a[free] >= 0):
+            found.append(senses)
+    return found
+
+
+def test_joints_at_rest_move_as_the_one_combination_that_agrees():
+    """Gauss's principle against 3^n combinations: with static = kinetic friction exactly one agrees."""
+    rng = np.random.default_rng(3)
+    for n in (2, 3, 4):
+        for _ in range(60):
+            A = rng.normal(size=(n, n))
+            M, f = A @ A.T + 0.1 * np.eye(n), rng.normal(size=n)
+            T = rng.uniform(0.05, 1, n)
+            G = np.linalg.inv(M)
+            assert consistent(M, f, T, T) == [tuple(held_together(G, G @ f, T, T))]
+
+
+def test_two_joints_stick_and_slip_as_their_equations_say():
+    """T = (3, 0.5): between events M a + c = Q - T sign; each phase as its modes, to the last rest; proven."""
+    result = run(two(1, -0.5, "torque = 3", "torque = 0.5"), 6)
+    assert [phase.model.configuration.modes["upper"].sense for phase in result.phases][-1] == 0
+    assert [phase.model.configuration.modes["lower"].sense for phase in result.phases][-1] == 0
+    q1, q2 = result["q1"][-1], result["q2"][-1]
+    outer = G / 2 * math.sin(q1 + q2)
+    assert abs(outer) <= 0.5 and abs(outer + 1.5 * G * math.sin(q1)) <= 3
+    assert result.certify().ok
+
+
+def test_several_ways_to_go_on_from_rest_are_named():
+    """T_k = (5.663, 0.849), T_s = (14.375, 2.154) at (2.073, -1.407): (stick, slip) agrees, and (slip, stick)."""
+    result = run(two(2.073, -1.407, "torque = 5.663, static = 14.375", "torque = 0.849, static = 2.154"), 1)
+    assert "leaves 2 ways to go on from rest: 'upper' sticks, 'lower' slips back; or" in result.message
+    one = run(two(-1.488, -0.563, "torque = 4.245, static = 8.614", "torque = 0.333, static = 0.675"), 0.01)
+    assert (senses(one, "upper")[0], senses(one, "lower")[0]) == (1, 0)
