@@ -397,11 +397,11 @@ def _by_gauss(
     matrix = np.block([[M, -J.T], [J, np.zeros((k, k))]])
     G = D @ np.linalg.lstsq(matrix, np.vstack([D.T, np.zeros((k, n))]), rcond=None)[0][: len(u)]
     b = found[2 * n : 3 * n] + G @ kinetic
-    senses = held_together(G, b, kinetic, static)
+    senses = senses_from_rest(G, b, kinetic, static)
     return [{**near.modes, **{c.name: ContactMode(sense=s) for c, s in zip(resting, senses, strict=True)}}]
 
 
-def held_together(G: np.ndarray, b: np.ndarray, kinetic: np.ndarray, static: np.ndarray) -> list[int]:
+def senses_from_rest(G: np.ndarray, b: np.ndarray, kinetic: np.ndarray, static: np.ndarray) -> list[int]:
     """The sense in which each joint begins to move, 0 of those that stick: s'' = b + G tau of joints at rest.
 
     Args:

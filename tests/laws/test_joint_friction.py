@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 
 import eomgen
 from eomgen.errors import ModelError
-from eomgen.simulation.phase_change import held_together
+from eomgen.simulation.phase_change import senses_from_rest
 
 G = 9.81
 HINGE = """
@@ -282,7 +282,7 @@ def test_joints_at_rest_move_as_the_one_combination_that_agrees():
             M, f = A @ A.T + 0.1 * np.eye(n), rng.normal(size=n)
             T = rng.uniform(0.05, 1, n)
             G = np.linalg.inv(M)
-            assert consistent(M, f, T, T) == [tuple(held_together(G, G @ f, T, T))]
+            assert consistent(M, f, T, T) == [tuple(senses_from_rest(G, G @ f, T, T))]
 
 
 def test_two_joints_stick_and_slip_as_their_equations_say():
