@@ -343,10 +343,15 @@ ENDLESS = ("inf", "-inf")
 
 @dataclass(frozen=True)
 class Limits:
-    """The least and the largest value of a joint's variable; None where there is none."""
+    """The least and the largest value of a joint's variable; None where there is none.
+
+    Args:
+        in_si: True if plain numbers are in SI, not in the unit of the coordinate.
+    """
 
     low: Expression | None = None
     high: Expression | None = None
+    in_si: bool = False
 
 
 @dataclass(frozen=True)
@@ -397,6 +402,34 @@ class FromFieldRule:
 AngleLimits = Annotated[Limits, LimitsRule(FormulaRule("rad", in_own_unit=True))]
 SlideLimits = Annotated[Limits, LimitsRule(FormulaRule("m", in_own_unit=True))]
 FromField = Annotated[Any, FromFieldRule()]
+
+
+@dataclass(frozen=True, kw_only=True)
+class TurnStop(Part):
+    """Stops that yield: beyond a limit by x, k x + d x' pushes back and never pulls.
+
+    Args:
+        stiffness: k [N m].
+        damping: d [N m s].
+    """
+
+    title: ClassVar[str] = "stop"
+    stiffness: AngularStiffness
+    damping: AngularDamping | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class SlideStop(Part):
+    """Stops that yield: beyond a limit by x, k x + d x' pushes back and never pulls.
+
+    Args:
+        stiffness: k [N/m].
+        damping: d [N s/m].
+    """
+
+    title: ClassVar[str] = "stop"
+    stiffness: LinearStiffness
+    damping: LinearDamping | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

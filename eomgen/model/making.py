@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from itertools import islice
 from typing import Any, TypeVar
 
@@ -441,13 +442,25 @@ def _resolved_body(model: Any, name: str, body: Any) -> Any:
     changes: dict[str, Any] = {}
     if body.line is not None:
         changes["line"] = tuple(_own(point) for point in body.line)
-    joint = body.joint
+    joint = _with_stop(model, body.joint)
+    if joint is not body.joint:
+        changes["joint"] = joint
     if joint is not None:
         point = None if joint.point is None else _own(joint.point)
         at = model.place(joint.at) if isinstance(joint.at, str) else joint.at
         if point != joint.point or at is not joint.at:
             changes["joint"] = joint.altered(point=point, at=at)
     return body.altered(**changes) if changes else body
+
+
+def _with_stop(model: Any, joint: Any) -> Any:
+    """A joint whose stops yield, with its limits in SI."""
+    law, limits = getattr(joint, "stop", None), getattr(joint, "limits", None)
+    if law is None or limits is None or limits.in_si:
+        return joint
+    unit = _unit_of(model, getattr(joint, joint.limited[0]))
+    low, high = (None if x is None else in_si(x, unit) for x in (limits.low, limits.high))
+    return joint.altered(limits=replace(limits, low=low, high=high, in_si=True))
 
 
 def _own(point: str) -> str:

@@ -29,6 +29,7 @@ c = 0.4
 mu = 0.2
 """
 TENSOR = "mass = 'm'\ncenter = [0.1, -0.05, 0.2]\ninertia = [0.3, 0.4, 0.5, 0.02, -0.03, 0.01]\n"
+YIELDING = "limits = ['inf', 0.1], stop = { stiffness = 'k', damping = 'c' }"
 REBOUNDS = "restitution = 'mu'"
 STOPS = "limits = [-1, 'l'], restitution = 'mu'"
 RUBS = ", friction = { torque = 0.4, static = 0.5 }"
@@ -260,10 +261,10 @@ FLOOR = "plane = { at = [0, 0, 0], normal = [0, 0.1, 1] }"
 SPACE = {
     "fixed": jointed(f'kind = "fixed", {SEAT}, axis = [1, 2, 2], angle = 0.3'),
     "revolute": jointed(
-        f'kind = "revolute", {SEAT}, axis = [1, -2, 2], angle = "a", torque = "2 - a\'", {EFFORTS}', "a"
+        f'kind = "revolute", {SEAT}, axis = [1, -2, 2], angle = "a", torque = "2 - a\'", {YIELDING}, {EFFORTS}', "a"
     ),
     "prismatic": jointed(
-        f'kind = "prismatic", {SEAT}, axis = [1, -2, 2], displacement = "a", angle = 0.4, force = "t", {EFFORTS}', "a"
+        f'kind = "prismatic", {SEAT}, axis = [1, -2, 2], displacement = "a", force = "t", {YIELDING}, {EFFORTS}', "a"
     ),
     "cylindrical": jointed(
         f'kind = "cylindrical", {SEAT}, axis = [1, -2, "l"], displacement = "a", angle = "b", '
@@ -274,6 +275,9 @@ SPACE = {
     "screw": jointed(
         f'kind = "screw", {SEAT}, axis = [1, -2, 2], angle = "a", pitch = 0.15, torque = "t", {STOPS}, {EFFORTS}{RUBS}',
         "a",
+    ),
+    "screw that yields": jointed(
+        f'kind = "screw", {SEAT}, axis = [1, -2, 2], angle = "a", pitch = 0.2, {YIELDING}', "a"
     ),
     "universal": jointed(f'kind = "universal", {SEAT}, axes = [[1, 0, 0.2], [0, 1, 0]], angles = ["a", "b"]', "a", "b"),
     "planar": jointed(f'kind = "planar", {SEAT}, x = "a", y = "b", angle = "d"', "a", "b", "d"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -199,6 +200,55 @@ def test_a_stop_in_space_pushes_both_bodies_of_its_joint():
     before, after = result.phases[0].last, result.phases[1].first
     assert after["b'"] == pytest.approx(-0.3 * before["b'"], rel=1e-9)
     assert result.certify().ok
+
+
+SOFT = """
+eomgen = 1
+space = "plane"
+parameters = { m = 2, k = 5000, d = 20, v = 3, hi = 0.5 }
+coordinates = { x = { speed = "v" } }
+[bodies.cart]
+mass = "m"
+[bodies.cart.joint]
+kind = "prismatic"
+axis = [1, 0]
+displacement = "x"
+limits = ["-inf", "hi"]
+stop = { stiffness = "k", damping = "d" }
+"""
+
+
+def test_a_stop_that_yields_pushes_back_and_never_pulls():
+    """m x'' = -(k y + d y'), y = x - hi > 0, while that pushes: the speed at which it lets go."""
+
+    def lets_go(t, y):
+        return 5000 * y[0] + 20 * y[1]
+
+    lets_go.terminal, lets_go.direction = True, -1
+    found = solve_ivp(
+        lambda t, y: [y[1], -(5000 * y[0] + 20 * y[1]) / 2], (0, 1), [0, 3], events=lets_go, rtol=1e-12, atol=1e-12
+    )
+    result = run(SOFT, 0.5, rtol=1e-11, atol=1e-11)
+    assert result["x'"][-1] == pytest.approx(found.y[1, -1], rel=1e-7)
+    assert not result.impacts and result.certify().ok
+
+
+def test_an_elastic_stop_returns_the_speed():
+    """Without damping: after half a period pi sqrt(m/k) in it, -v."""
+    result = run(SOFT.replace(', damping = "d"', "").replace(", d = 20", ""), 0.4, rtol=1e-11, atol=1e-11)
+    assert result["x'"][-1] == pytest.approx(-3, rel=1e-7)
+    assert result["x"][-1] == pytest.approx(0.5 - 3 * (0.4 - 0.5 / 3 - math.pi * math.sqrt(2 / 5000)), abs=1e-6)
+    model = eomgen.loads(SOFT)
+    assert replace(model).bodies["cart"].joint.driving == model.bodies["cart"].joint.driving
+
+
+def test_stops_that_yield_without_limits_or_with_a_restitution_are_refused():
+    with pytest.raises(ModelError, match="has no limits"):
+        eomgen.loads(SOFT.replace('limits = ["-inf", "hi"]\n', "").replace(", hi = 0.5", ""))
+    with pytest.raises(ModelError, match="a restitution is one of rigid stops"):
+        eomgen.loads(SOFT + "restitution = 0.5\n")
+    with pytest.raises(ModelError, match="is no coordinate"):
+        eomgen.loads(SOFT.replace('displacement = "x"', 'displacement = "x + 1"'))
 
 
 def test_limits_that_leave_nothing_and_stops_of_driven_joints_are_refused():

@@ -151,6 +151,7 @@ class Joint(Part):
     only_space: ClassVar[bool] = False
     carries_reaction: ClassVar[bool] = True
     straight: ClassVar[bool] = True  # what slides in it keeps its direction
+    driven_by: ClassVar[str] = ""  # the field of what drives its one variable
     limited: ClassVar[tuple[str, ...]] = ()  # its variables' fields that may have limits or friction, in their order
     seated: ClassVar[bool] = True  # `at` is where the joint sits; else it is among the variables
 
@@ -164,7 +165,7 @@ class Joint(Part):
     def limits_of_variables(self) -> tuple[tuple[int, str, Limits], ...]:
         """(number of the variable, its field, its limits) of each variable with limits."""
         given = getattr(self, "limits", None)
-        if given is None:
+        if given is None or getattr(self, "stop", None) is not None:
             return ()
         each = (given,) if isinstance(given, Limits) else (getattr(given, name) for name in self.limited)
         pairs = zip(self.limited, each, strict=True)

@@ -1,9 +1,12 @@
 """Joints of one axis: revolute, prismatic, cylindrical, screw."""
 
 from abc import abstractmethod
+from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar
 
 from eomgen.frozen import dataclass
+from eomgen.model.catalog import Catalog
+from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.fields import FormulaRule
 from eomgen.model.joints.base import (
     Column,
@@ -43,13 +46,16 @@ from eomgen.model.kinds import (
     SlideFriction,
     SlideInertia,
     SlideLimits,
+    SlideStop,
     SpaceDirection,
     Torque,
     TurnFriction,
+    TurnStop,
     ValueOf,
 )
 from eomgen.model.part import PartRule
-from eomgen.symbolic.expression import Expression, Matrix, Pose, Vector, cos, sin
+from eomgen.model.positions import DocumentPath
+from eomgen.symbolic.expression import Expression, Matrix, Pose, Vector, as_expression, cos, sin
 
 # -------- axis ------------------------------------------------------------------------------------------------
 # Joints of one axis: the child turns about it, slides along it, or both.
@@ -62,6 +68,39 @@ class AxisJoint(Joint):
     S has the columns (a_k n, b_k n). W: the torques across n, and n where nothing turns; the forces across n, and n
     where nothing advances; of a thread the force a n with the torque -b n, which does no work.
     """
+
+    def diagnostics(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
+        """Diagnostics of stops that yield: they need limits, and no restitution; with damping a coordinate."""
+        stop, limits = getattr(self, "stop", None), getattr(self, "limits", None)
+        if stop is None:
+            return
+        s = getattr(self, self.limited[0])
+        if limits is None:
+            yield Diagnostic((*path, "stop"), "the stop of the joint has no limits", "limits = [-1, 1]", key=True)
+        if getattr(self, "restitution", None) is not None:
+            what = "a restitution is one of rigid stops, and 'stop' makes them yield"
+            yield Diagnostic((*path, "restitution"), what, "leave one out; damping takes energy", key=True)
+        if stop.damping is not None and s is not None and not s.text.isidentifier():
+            what = f"the damping of a stop is along a coordinate, and '{s.text}' is no coordinate"
+            yield Diagnostic((*path, "stop", "damping"), what, f"a coordinate as {self.limited[0]}, or none", key=True)
+
+    @property
+    def driving(self) -> Expression | None:
+        """What drives the one variable, stops that yield in it: beyond a limit by x, max(0, k x + d x') back."""
+        given: Expression | None = getattr(self, self.driven_by)
+        law, limits = getattr(self, "stop", None), getattr(self, "limits", None)
+        if law is None or limits is None:
+            return given
+        s, found = getattr(self, self.limited[0]), [] if given is None else [f"({given.text})"]
+        for bound, sense in ((limits.low, "-"), (limits.high, "")):
+            if bound is not None:
+                beyond = f"{sense}(({s.text}) - ({bound.text}))"
+                push = f"max(0, ({law.stiffness.text})*({beyond}))"
+                if law.damping is not None:
+                    rate = f"{sense}({law.damping.text})*{s.text}'"
+                    push = f"max(0, ({law.stiffness.text})*({beyond}) + ({rate}))*(1 + sign({beyond}))/2"
+                found.append(push if sense else f"-{push}")
+        return as_expression(" + ".join(found).replace("+ -", "- "))
 
     @abstractmethod
     def normal(self, value: ValueOf) -> Vector:
@@ -124,10 +163,12 @@ class Revolute(AxisJoint):
         stiffness, damping, rest, armature: - k (s - rest), - d s', and armature s'^2 / 2 to T.
         limits: [least, largest] of the angle, "inf" for none: rigid stops, in the unit of its coordinate.
         restitution: of the stops: with this share of its speed it rebounds, 0 to 1 (None: not at all).
+        stop: instead of rigid ones stops that yield: { stiffness = k, damping = d } pushes back beyond the limits.
         friction: dry: { torque = T } or { coefficient = mu, radius = r }; `static`, the largest at rest; or `smooth`.
     """
 
     limited: ClassVar[tuple[str, ...]] = ("angle",)
+    driven_by: ClassVar[str] = "torque"
     kind: ClassVar[str] = "revolute"
     angle: Angle
     axis: SpaceDirection | None = None
@@ -138,6 +179,7 @@ class Revolute(AxisJoint):
     armature: RotorInertia | None = None
     limits: AngleLimits | None = None
     restitution: Restitution | None = None
+    stop: Annotated[TurnStop, PartRule(TurnStop)] | None = None
     friction: Annotated[HingeFriction, PartRule(HingeFriction)] | None = None
 
     def turns(self) -> tuple[Expression, ...]:
@@ -156,13 +198,13 @@ class Revolute(AxisJoint):
         return ((1, 0),)
 
     def efforts(self) -> tuple[Effort | None, ...]:
-        return (Effort(self.torque, self.stiffness, self.damping, self.rest, self.armature),)
+        return (Effort(self.driving, self.stiffness, self.damping, self.rest, self.armature),)
 
     def pushes(self) -> tuple[PushAlong, ...]:
         return (
             PushAlong(
                 way=self.angle,
-                push=self.torque,
+                push=self.driving,
                 stiffness=self.stiffness,
                 damping=self.damping,
                 rest=self.rest,
@@ -190,10 +232,12 @@ class Prismatic(AxisJoint):
         stiffness, damping, rest, armature: - k (s - rest), - d s', and armature s'^2 / 2 to T.
         limits: [least, largest] of the displacement, "inf" for none: rigid stops, in the unit of its coordinate.
         restitution: of the stops: with this share of its speed it rebounds, 0 to 1 (None: not at all).
+        stop: instead of rigid ones stops that yield: { stiffness = k, damping = d } pushes back beyond the limits.
         friction: dry: { force = F } or { coefficient = mu }; `static`, the largest at rest; or `smooth`.
     """
 
     limited: ClassVar[tuple[str, ...]] = ("displacement",)
+    driven_by: ClassVar[str] = "force"
     kind: ClassVar[str] = "prismatic"
     axis: Direction
     displacement: Displacement
@@ -205,6 +249,7 @@ class Prismatic(AxisJoint):
     armature: SlideInertia | None = None
     limits: SlideLimits | None = None
     restitution: Restitution | None = None
+    stop: Annotated[SlideStop, PartRule(SlideStop)] | None = None
     friction: Annotated[SlideFriction, PartRule(SlideFriction)] | None = None
 
     def turns(self) -> tuple[Expression, ...]:
@@ -231,13 +276,13 @@ class Prismatic(AxisJoint):
         return 0 if self.angle is None else value(self.angle)
 
     def efforts(self) -> tuple[Effort | None, ...]:
-        return (Effort(self.force, self.stiffness, self.damping, self.rest, self.armature),)
+        return (Effort(self.driving, self.stiffness, self.damping, self.rest, self.armature),)
 
     def pushes(self) -> tuple[PushAlong, ...]:
         return (
             PushAlong(
                 way=self.displacement,
-                push=self.force,
+                push=self.driving,
                 stiffness=self.stiffness,
                 damping=self.damping,
                 rest=self.rest,
@@ -325,10 +370,12 @@ class Screw(AxisJoint):
         stiffness, damping, rest, armature: - k (s - rest), - d s', and armature s'^2 / 2 to T.
         limits: [least, largest] of the angle, "inf" for none: rigid stops, in the unit of its coordinate.
         restitution: of the stops: with this share of its speed it rebounds, 0 to 1 (None: not at all).
+        stop: instead of rigid ones stops that yield: { stiffness = k, damping = d } pushes back beyond the limits.
         friction: dry: { torque = T }; `static`, the largest at rest; or `smooth`.
     """
 
     limited: ClassVar[tuple[str, ...]] = ("angle",)
+    driven_by: ClassVar[str] = "torque"
     kind: ClassVar[str] = "screw"
     only_space: ClassVar[bool] = True
     axis: SpaceDirection | None = None
@@ -341,6 +388,7 @@ class Screw(AxisJoint):
     armature: RotorInertia | None = None
     limits: AngleLimits | None = None
     restitution: Restitution | None = None
+    stop: Annotated[TurnStop, PartRule(TurnStop)] | None = None
     friction: Annotated[TurnFriction, PartRule(TurnFriction)] | None = None
 
     def turns(self) -> tuple[Expression, ...]:
@@ -359,13 +407,13 @@ class Screw(AxisJoint):
         return ((1, value(self.pitch)),)
 
     def efforts(self) -> tuple[Effort | None, ...]:
-        return (Effort(self.torque, self.stiffness, self.damping, self.rest, self.armature),)
+        return (Effort(self.driving, self.stiffness, self.damping, self.rest, self.armature),)
 
     def pushes(self) -> tuple[PushAlong, ...]:
         return (
             PushAlong(
                 way=self.angle,
-                push=self.torque,
+                push=self.driving,
                 stiffness=self.stiffness,
                 damping=self.damping,
                 rest=self.rest,
