@@ -86,7 +86,7 @@ class AxisJoint(Joint):
 
     @property
     def driving(self) -> Expression | None:
-        """What drives the one variable, stops that yield in it: beyond a limit by x, max(0, k x + d x') back."""
+        """Drive of the one variable, stops that yield in it: beyond a limit by x, max(0, k x + d x') back."""
         given: Expression | None = getattr(self, self.driven_by)
         law, limits = getattr(self, "stop", None), getattr(self, "limits", None)
         if law is None or limits is None:
