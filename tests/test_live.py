@@ -497,3 +497,12 @@ def test_events_tell_all_and_then_what_changes(file):
             stream.readline()
         assert told["revision"] == 1
         connection.close()
+
+
+def test_a_change_in_a_file_of_a_part_is_told(tmp_path):
+    """The model's own file stays as it is, and is told once more: what it stands for is another model."""
+    path, part = tmp_path / "m.toml", tmp_path / "leg.toml"
+    part.write_text("one")
+    text = 'eomgen = 1\n[parts.leg]\nfile = "leg.toml"\n'
+    path.write_text(text)
+    assert seen(path, lambda: part.write_text("another"), 2) == [text.encode()] * 2

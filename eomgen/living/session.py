@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 import threading
+import tomllib
 import webbrowser
 from base64 import b64encode
 from collections.abc import Callable, Iterator, Mapping
@@ -86,7 +87,7 @@ Look = tuple[int, int, int] | None
 
 
 class Watcher:
-    """Contents of a file, as they come.
+    """Contents of a file, as they come; the same again, where a file of one of its parts changes.
 
     Args:
         most: bytes that are read.
@@ -94,6 +95,7 @@ class Watcher:
 
     def __init__(self, path: Path, most: int) -> None:
         self.path, self.most = path, most
+        self._parts: tuple[Path, ...] = ()
         self._over = threading.Event()
 
     def stop(self) -> None:
@@ -105,9 +107,12 @@ class Watcher:
         believed: Look | str = "none yet"
         before: Look | str = "none yet"
         known: bytes | None = None
-        missed = 0
+        missed, beside = 0, self._beside()
         while not self._over.is_set():
             now = self._look()
+            if known is not None and now == believed and (moved := self._beside()) != beside:
+                beside = moved
+                yield known
             missed = missed + 1 if _is_nothing(now) else 0
             if now != believed and now == before and (not missed or missed > MISSED):
                 found = self._read(now)
@@ -115,6 +120,8 @@ class Watcher:
                     believed = now
                     if found != known:
                         known = found if isinstance(found, bytes) else None
+                        self._parts = _files_of_parts(known or b"", self.path)
+                        beside = self._beside()
                         yield found
             before = now
             self._over.wait(BETWEEN)
@@ -128,12 +135,11 @@ class Watcher:
 
         threading.Thread(target=follow_on, daemon=True).start()
 
+    def _beside(self) -> list[Look]:
+        return [_look_at(path) for path in self._parts]
+
     def _look(self) -> Look:
-        try:
-            found = os.stat(self.path)
-        except OSError:
-            return None
-        return found.st_mtime_ns, found.st_size, found.st_ino
+        return _look_at(self.path)
 
     def _read(self, look: Look) -> bytes | OSError | None:
         """The content; None where the file changed while it was read."""
@@ -142,6 +148,24 @@ class Watcher:
         except OSError as error:
             return error
         return found if self._look() == look else None
+
+
+def _files_of_parts(content: bytes, path: Path) -> tuple[Path, ...]:
+    """The files that [parts] of a model name; of parts of parts those of the first alone."""
+    try:
+        parts = tomllib.loads(content.decode("utf-8-sig")).get("parts", {})
+    except (ValueError, RecursionError):
+        return ()
+    named = [part.get("file") for part in parts.values() if isinstance(part, dict)] if isinstance(parts, dict) else []
+    return tuple(path.parent / name for name in dict.fromkeys(named) if isinstance(name, str))
+
+
+def _look_at(path: Path) -> Look:
+    try:
+        found = os.stat(path)
+    except OSError:
+        return None
+    return found.st_mtime_ns, found.st_size, found.st_ino
 
 
 def _is_nothing(look: Look) -> bool:
