@@ -8,7 +8,7 @@ holds is seen here: sliding contacts come to rest and stick, landing ones lose t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache, cached_property
 from itertools import accumulate
@@ -294,12 +294,15 @@ def phase_text(models: PhaseModels, phase_run: PhaseRun) -> str:
     phrases = changed(models.model, phase_run.here.configuration, after.configuration)
     if after.impact is None:
         return f"{', '.join(phrases) or 'the contacts change and return'} {when}"
-    return f"{', '.join(phrases) or _rebounds(models, after.impact)} {when}" + _how_it_ends(models, after)
+    away = set(phase_run.here.configuration.open) & set(after.configuration.open)
+    phrases = (*_rebounds(models, after.impact, away), *phrases)
+    return f"{', '.join(phrases) or 'the contacts change and return'} {when}" + _how_it_ends(models, after)
 
 
-def _rebounds(models: PhaseModels, impact: Impact) -> str:
-    contacts = {contact.name: contact for contact in models.model.contacts}
-    return ", ".join(f"{contacts[name].words} rebounds" for name in impact.contact.split(", "))
+def _rebounds(models: PhaseModels, impact: Impact, away: Collection[str]) -> Iterator[str]:
+    """A phrase for each contact that closes and is open again."""
+    words = {contact.name: contact.words for contact in models.model.contacts}
+    return (f"{words[name]} rebounds" for name in impact.contact.split(", ") if name in away)
 
 
 def _how_it_ends(models: PhaseModels, after: PhaseStart) -> str:
