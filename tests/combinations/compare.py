@@ -9,7 +9,7 @@ import contextlib
 import io
 import warnings
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from random import Random
 from typing import Any
 
@@ -64,15 +64,17 @@ def quiet() -> Iterator[None]:
 def states(oracle: Oracle, e: Any, x0: np.ndarray, seed: int, count: int = 2) -> Iterator[tuple[str, State]]:
     """The start, and states near it that keep every constraint."""
     nq = len(e.coordinates)
-    yield "start", oracle.of_speeds(0.0, x0[:nq], e.speeds, x0[nq:])
+    start = oracle.of_speeds(0.0, x0[:nq], e.speeds, x0[nq:])
+    yield "start", start
     rng = Random(seed)
-    v0 = oracle.of_speeds(0.0, x0[:nq], e.speeds, x0[nq:]).v
+    v0 = start.v
     for k in range(count):
         t = round(0.37 * (k + 1), 3)
         q = x0[:nq] + np.array([rng.uniform(-0.15, 0.15) for _ in range(nq)])
         v = v0 + np.array([rng.uniform(-0.8, 0.8) for _ in range(nq)])
         try:
-            yield f"t = {t}", oracle.consistent(t, q, v, oracle.closed_at_start())
+            z = start.z + np.array([rng.uniform(-0.5, 0.5) for _ in start.z])
+            yield f"t = {t}", replace(oracle.consistent(t, q, v, oracle.closed_at_start()), z=z)
         except NoAnswer:
             continue
 
@@ -129,7 +131,7 @@ def _at(found: Found, name: str, s: State, oracle: Oracle, e: Any, functions: di
         found.skipped.append("a contact that rubs and can end would have to pull: it is not closed there")
         return
     u, du = oracle.speeds_of(s, e.speeds, solved.a)
-    x = np.concatenate([s.q, u])
+    x = np.concatenate([s.q, u, s.z])
     now = oracle.maximal(s)
     inputs = [oracle.model.input(i, now) for i in e.inputs]
     p = next(iter(functions.values())).p0
@@ -137,13 +139,13 @@ def _at(found: Found, name: str, s: State, oracle: Oracle, e: Any, functions: di
     if unsure:
         raise NoAnswer(f"no single acceleration of {', '.join(unsure)}")
     size = 1.0 + 1e-3 * float(np.max(np.abs(du), initial=0.0))
+    names = [*e.coordinates, *e.speeds, *e.states]
+    want = [*s.v, *du, *oracle.state_rates(s, solved.a)]
     for target, rhs in functions.items():
         with quiet():
             got = rhs(s.t, x, p, inputs)
-        for label, a, b in zip(
-            [f"{q}'" for q in e.coordinates] + [f"{n}'" for n in e.speeds], got, [*s.v, *du], strict=True
-        ):
-            found.same("acceleration", f"{label} at {name} by {target}", a, b, size)
+        for label, a, b in zip(names, got, want, strict=True):
+            found.same("acceleration", f"{label}' at {name} by {target}", a, b, size)
     _reactions(found, name, s, oracle, e, solved, (s.t, x, p, inputs))
     _energies(found, name, s, oracle, e, (s.t, x, p, inputs))
 
@@ -172,9 +174,7 @@ def _energies(found: Found, name: str, s: State, oracle: Oracle, e: Any, at: tup
     t, x, p, inputs = at
     g = e.graph.symbols
     known = dict(
-        zip(
-            (g.t, *g.parameters.values(), *g.q, *g.u, *g.inputs.values()), map(float, (t, *p, *x, *inputs)), strict=True
-        )
+        zip((g.t, *g.parameters.values(), *g.x, *g.inputs.values()), map(float, (t, *p, *x, *inputs)), strict=True)
     )
     T, V = oracle.energy(s)
     got = evaluate((e.graph.T, e.graph.V), known, FLOAT)

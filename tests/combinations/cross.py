@@ -61,6 +61,7 @@ def _parts(product: Product, parts: list[Any]) -> Found:
 def expected(oracle: Oracle, s: State, solved: Solved) -> dict[str, float]:
     """Everything that the oracle says at a state, by the names of columns."""
     said = {f"acc_{q}": float(a) for q, a, sure in zip(oracle.names, solved.a, solved.sure, strict=True) if sure}
+    said |= {f"rate_{z}": float(x) for z, x in zip(oracle.model.states, oracle.state_rates(s, solved.a), strict=True)}
     return said | oracle.reactions(solved, s)
 
 
@@ -149,7 +150,8 @@ def _beyond(oracle: Oracle, s: State, solved: Solved, columns: Any, i: int) -> b
 
 def _expected_beside(oracle: Oracle, s: State, solved: Solved, dt: float) -> dict[str, float]:
     """Everything that the oracle says a little before or after a state, on its motion."""
-    near = State(s.t + dt, s.q + dt * s.v + dt**2 / 2 * solved.a, s.v + dt * solved.a)
+    z = s.z + dt * oracle.state_rates(s, solved.a)
+    near = State(s.t + dt, s.q + dt * s.v + dt**2 / 2 * solved.a, s.v + dt * solved.a, z)
     reported = oracle.contacts(near) if oracle.modes else oracle.solve(near)
     return expected(oracle, near, reported) | kinematic(oracle, near, reported)
 
@@ -169,9 +171,9 @@ def _small(found: Found, model: Any, product: Product, oracle: Oracle, s: State,
     reported = eomgen.linearize(model).as_dict()
     at = {name: x["value"] for name, x in reported["state"].items()}
     at |= {q: float(oracle.model.driven_at(q, 0.0)[0]) for q in oracle.model.driven}
-    if any(q not in at for q in oracle.names):
+    if any(name not in at for name in (*oracle.names, *oracle.model.states)):
         return
-    A = oracle.small(np.array([at[q] for q in oracle.names]))
+    A = oracle.small(*(np.array([at[name] for name in names]) for names in (oracle.names, oracle.model.states)))
     own = np.array([complex(*x) for x in reported["eigenvalues"]])
     if len(own) != len(A):
         found.skipped.append("linearize: other states")
@@ -203,7 +205,7 @@ def _right(found: Found, language: str, got: Any, product: Product, oracle: Orac
     if solved.sticks:
         return  # code has friction by the law of sliding
     _, du = oracle.speeds_of(s, e.speeds, solved.a)
-    want = [*s.v, *du]
+    want = [*s.v, *du, *oracle.state_rates(s, solved.a)]
     size = 1.0 + 1e-3 * float(np.max(np.abs(du), initial=0.0))
     for k, (a, b) in enumerate(zip(got, want, strict=True)):
         found.same("code", f"dx[{k}] at the start by {language}", a, b, size)
@@ -214,7 +216,7 @@ def _given(product: Product, oracle: Oracle, s: State) -> tuple[Any, Any, list[f
     u, _ = oracle.speeds_of(s, e.speeds)
     now = oracle.maximal(s)
     p = next(iter(product.functions.values())).p0
-    return np.concatenate([s.q, u]), p, [oracle.model.input(i, now) for i in e.inputs]
+    return np.concatenate([s.q, u, s.z]), p, [oracle.model.input(i, now) for i in e.inputs]
 
 
 def _c(found: Found, model: Any, product: Product, oracle: Oracle, s: State, solved: Solved) -> None:

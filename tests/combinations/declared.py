@@ -32,6 +32,7 @@ class Moving:
     poses: dict[str, tuple[Jet, Jet]] = field(default_factory=dict)
     inputs: dict[str, float] | None = None
     local: dict[str, Any] = field(default_factory=dict)
+    states: dict[str, float] = field(default_factory=dict)
 
     def name(self, name: str, primes: int) -> Any:
         if name in self.local:
@@ -44,6 +45,8 @@ class Moving:
             x = self.t
         elif name in self.q:
             x = self.q[name]
+        elif name in self.states and not primes:
+            return self.states[name]
         elif name in self.model.speeds:
             x = self.speed(name)
         elif name in self.model.inputs:
@@ -200,6 +203,7 @@ class Declared:
         self.speeds = {name: {"rate": x} if isinstance(x, str) else x for name, x in d.get("speeds", {}).items()}
         self.inputs = d.get("inputs", {})
         self.tables = d.get("tables", {})
+        self.states = d.get("states", {})
         self.points = d.get("points", {})
         self.bodies = {name: {**body, "name": name} for name, body in d.get("bodies", {}).items()}
         self.constraints = d.get("constraints", {})

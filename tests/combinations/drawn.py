@@ -9,7 +9,8 @@ from typing import Any
 
 def text_of(levels: dict[str, str], seed: int) -> str:
     """The model of a row of levels; the numbers in it by the seed."""
-    return toml(Drawing(levels, Random(f"{sorted(levels.items())}{seed}")).model())
+    older = {factor: level for factor, level in levels.items() if (factor, level) != ("state", "none")}
+    return toml(Drawing(levels, Random(f"{sorted(older.items())}{seed}")).model())
 
 
 def toml(model: dict[str, Any]) -> str:
@@ -80,6 +81,7 @@ class Drawing:
         self.inputs: dict[str, Any] = {}
         self.tables: dict[str, Any] = {}
         self.speeds: dict[str, Any] = {}
+        self.states: dict[str, Any] = {}
         self.outputs: dict[str, Any] = {}
         self.host: str | None = None
 
@@ -803,6 +805,26 @@ class Drawing:
             if isinstance(old, dict):
                 old.pop("speed", None)
 
+    def state(self) -> None:
+        """What follows a coordinate late, or its acceleration; what pushes by it."""
+        how = self.levels["state"]
+        if how == "none":
+            return
+        q = self.rng.choice([x for x in self.coordinates if self.kinds[x] != "pure"])
+        unit = "m" if self.kinds[q] == "length" else "rad"
+        if how == "accelerated":
+            declared = {"rate": f"{q}'' - w*z1", "unit": f"{unit}/s"}
+        else:
+            declared = {"rate": f"w*({q} - z1) + {q}'/3" if self.rng.random() < 0.5 else f"w*({q} - z1)", "unit": unit}
+        if self.levels["units"] == "none":
+            del declared["unit"]
+        self.states["z1"] = {**declared, "start": self.number(-0.5, 0.5)}
+        self.outputs["rate_z1"] = "z1'"
+        if how == "pushes":
+            push = "k*z1" if unit == "m" else "F0*z1"
+            point = f"{self.rng.choice(list(self.bodies))}.origin"
+            self.forces["lag"] = {"kind": "force", "point": point, "force": self.v(push, f"-{push}/2", f"{push}/3")}
+
     def ask(self) -> None:
         how = self.levels["output"]
         first = next(iter(self.coordinates))
@@ -897,6 +919,7 @@ class Drawing:
         self.force("f2", self.levels["second_force"])
         self.used_input()
         self.declared_speed()
+        self.state()
         self.ask()
         if self.levels["symbols"] == "declared":
             self.bodies["tool"]["symbol"] = "T"
@@ -904,6 +927,7 @@ class Drawing:
         body = {
             "coordinates": self.coordinates,
             "speeds": self.speeds,
+            "states": self.states,
             "inputs": self.inputs,
             "tables": self.tables,
             "points": self.points,

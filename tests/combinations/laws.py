@@ -793,6 +793,17 @@ def potential(o: Any, now: Any) -> float | None:
     return V
 
 
+# states of first order
+
+
+def _rate(now: Any, declared: dict) -> float:
+    """z' along the motion, whose curves hold the accelerations."""
+    return float(jet(now.value(declared["rate"])).c[0][0])
+
+
+STATES: dict[str, Callable] = {"rate": _rate}
+
+
 # friction, contacts, reactions
 
 

@@ -12,7 +12,7 @@ coefficients along the motion, never from derivatives of formulas. Imports nothi
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import laws
 import numpy as np
@@ -29,11 +29,12 @@ class NoAnswer(Exception):
 
 @dataclass
 class State:
-    """A state: time, coordinates and their rates, driven ones too."""
+    """A state: time, coordinates and their rates, driven ones too, and states of first order."""
 
     t: float
     q: np.ndarray
     v: np.ndarray
+    z: np.ndarray = field(default_factory=lambda: np.zeros(0))
 
 
 @dataclass
@@ -131,7 +132,10 @@ class Oracle:
             c[2, 0] = 0.0 if a is None else a[k] / 2
             c[1, 2 + k] = 1.0
             q[name] = Jet(c)
-        return self.placed(Moving(self.model, self._time(s.t, n), q))
+        return self.placed(Moving(self.model, self._time(s.t, n), q, states=self._states(s)))
+
+    def _states(self, s: State) -> dict[str, float]:
+        return dict(zip(self.model.states, s.z, strict=False))
 
     def maximal(self, s: State) -> Moving:
         """Curves in z: the motion without accelerations, the state that stands, a unit of each entry of z."""
@@ -145,7 +149,7 @@ class Oracle:
             c[1, 0] = s.v[k]
             c[1, 2 + 6 * nb + k] = 1.0
             q[name] = Jet(c)
-        now = Moving(self.model, self._time(s.t, n), q)
+        now = Moving(self.model, self._time(s.t, n), q, states=self._states(s))
         for i, name in enumerate(self.bodies):
             p, R = at.poses[name]
             center = p + ty.matmul(R, ty.vector(self.model.mass[name][1]))
@@ -279,7 +283,11 @@ class Oracle:
         loose: float = 1e-7,
         closed: dict[str, bool] | None = None,
     ) -> State:
-        """The state of given speeds: rates, declared speeds, and the constraints' rows, solved together."""
+        """The state of given speeds: rates, declared speeds, and the constraints' rows, solved together.
+
+        Behind the speeds u has the states of first order.
+        """
+        u, z = u[: len(speeds)], np.array(u[len(speeds) :], dtype=float)
         drives = self.drives(t)
         zero = State(t, np.array(q, dtype=float), np.zeros(len(q)))
         closed = self.closed_at_start() if closed is None else closed
@@ -301,7 +309,12 @@ class Oracle:
         v = np.linalg.lstsq(A, b, rcond=1e-10)[0]
         if np.max(np.abs(A @ v - b)) > loose * (1 + np.max(np.abs(b))):
             raise NoAnswer("these speeds break the constraints")
-        return State(t, np.array(q, dtype=float), v)
+        return State(t, np.array(q, dtype=float), v, z)
+
+    def state_rates(self, s: State, a: np.ndarray) -> np.ndarray:
+        """z' of the states at a state with accelerations."""
+        now = self.reduced(s, a)
+        return np.array([laws.STATES["rate"](now, declared) for declared in self.model.states.values()])
 
     def speeds_of(
         self, s: State, speeds: tuple[str, ...], a: np.ndarray | None = None
@@ -480,8 +493,8 @@ class Oracle:
         """Whether all that is driven stays where it is."""
         return all(np.max(np.abs(x[1:])) < 1e-12 for t in (0.0, 0.31, 1.7) for x in self.drives(t).values())
 
-    def small(self, q: np.ndarray, h: float = 1e-5) -> np.ndarray:
-        """A of x' = A x about rest at q, x = independent coordinates and their rates, by differences.
+    def small(self, q: np.ndarray, z: np.ndarray, h: float = 1e-5) -> np.ndarray:
+        """A of x' = A x about rest at q and z, x = independent coordinates, their rates, states, by differences.
 
         The constraints are positions alone; the rest follows from the independent ones, which the rows of J choose.
         """
@@ -492,11 +505,12 @@ class Oracle:
 
         def slope(x: np.ndarray) -> np.ndarray:
             places, rates = np.array(q, dtype=float), np.zeros(len(q))
-            places[own], rates[own] = q[own] + x[: len(own)], x[len(own) :]
-            s = self._closed_by(places, rates, dependent)
-            return np.concatenate([s.v[own], self.solve(s).a[own]])
+            places[own], rates[own] = q[own] + x[: len(own)], x[len(own) : 2 * len(own)]
+            s = replace(self._closed_by(places, rates, dependent), z=z + x[2 * len(own) :])
+            a = self.solve(s).a
+            return np.concatenate([s.v[own], a[own], self.state_rates(s, a)])
 
-        n = 2 * len(own)
+        n = 2 * len(own) + len(z)
         return np.array([(slope(h * e) - slope(-h * e)) / (2 * h) for e in np.eye(n)]).T
 
     def _closed_by(self, q: np.ndarray, v: np.ndarray, dependent: list[int]) -> State:

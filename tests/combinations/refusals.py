@@ -9,12 +9,25 @@ from typing import Any
 
 from features import FACTORS
 
-NAMED = ("parameters", "coordinates", "speeds", "inputs", "points", "bodies", "constraints", "forces", "outputs")
+NAMED = (
+    "parameters",
+    "coordinates",
+    "speeds",
+    "states",
+    "inputs",
+    "points",
+    "bodies",
+    "constraints",
+    "forces",
+    "outputs",
+)
 FEATURES = {level for levels in FACTORS.values() for level in levels} | {
     "energy", "equilibrium", "rest", "steady", "start", "friction", "contact", "reactions", "speeds", "urdf",
     "sensitivity", "stabilization", "regressor", "method", "unit", "statics",
 }  # fmt: skip
-AT = re.compile(r":\d+:\d+$|^[a-z_]+\.[\w.]+|^(parameters|coordinates|outputs|forces|constraints|bodies|inputs)\b")
+AT = re.compile(
+    r":\d+:\d+$|^[a-z_]+\.[\w.]+|^(parameters|coordinates|states|outputs|forces|constraints|bodies|inputs)\b"
+)
 
 
 def names_of(text: str) -> set[str]:

@@ -53,7 +53,7 @@ def test_every_kind_of_part_is_a_level_of_what_is_drawn():
 PLAIN = {
     "space": "plane", "base": "turning", "loop": "none", "tie": "none", "closure": "multipliers", "joint": "revolute",
     "joint_with": "nothing", "shape": "given", "force": "gravity", "second_force": "none", "contact": "none",
-    "speeds": "rates", "input": "none", "units": "none", "parameters": "numbers", "symbols": "plain",
+    "speeds": "rates", "input": "none", "state": "none", "units": "none", "parameters": "numbers", "symbols": "plain",
     "output": "none",
 }  # fmt: skip
 IN_SPACE = ("cylindrical", "screw", "universal", "spherical", "quaternion")
@@ -78,6 +78,8 @@ def of_law(table: str, law: str) -> compare.Product:
             base="ground",
             space=space,
         )
+    if table == "STATES":
+        return product(state="pushes")
     if table == "FORCES":
         return product(force=law, second_force="gravity")
     if table == "MOVING":
@@ -130,6 +132,7 @@ LAWS = [
     *(("FRICTION", law) for law in laws.FRICTION),
     ("MOVING", "point"),
     ("STICKING", "least"),
+    ("STATES", "rate"),
 ]
 
 
