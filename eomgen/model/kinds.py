@@ -369,7 +369,7 @@ class LimitsRule:
             )
             return None
         ends = [None if self._is_endless(x) else self.item.read(x, (*path, i), found) for i, x in enumerate(raw)]
-        return Limits(*ends)
+        return Limits(ends[0], ends[1])
 
     @staticmethod
     def _is_endless(raw: Any) -> bool:

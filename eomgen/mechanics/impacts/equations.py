@@ -158,9 +158,9 @@ class ImpactEquations:
             raise DerivationError(what, fix="coordinates that are free of the contact")
         reaction = Reactions.of(closed).component("force", axis, owner)
         still: dict[Node, Scalar] = dict.fromkeys((*symbols.a, *symbols.lam), 0)
-        values: dict[str, Scalar] = {x.name: x for x in symbols.x} | {"t": symbols.t}
+        values: dict[str, Scalar] = {x.name: x for x in (*symbols.x, symbols.t)}
         values |= {name: node for name, node in symbols.parameters.items()}
-        known = transplanted(tuple(self.solution.values()), symbols.t.graph, values)
+        known = transplanted(tuple(self.solution.values()), closed.scope.graph, values)
         solution = dict(zip(self.solution, known, strict=True))
         moved: dict[Node, Scalar] = {}
         for a, u, later in zip(symbols.a, symbols.u, self.after, strict=True):

@@ -336,7 +336,7 @@ class Quantities:
             raise DerivationError(f"'{owner}' has no impulse of its own", fix=f"one of {', '.join(found.impulses)}")
         symbols = self.system.symbols
         meanings: dict[str, Scalar] = {x.name: x for x in (*symbols.x, *symbols.parameters.values(), symbols.t)}
-        return transplanted((value,), symbols.t.graph, meanings)[0]
+        return transplanted((value,), self.system.scope.graph, meanings)[0]
 
     def drive(self, coordinate: str) -> Scalar:
         """Force or moment of the drive that moves a driven coordinate as given."""
