@@ -306,3 +306,12 @@ def test_a_table_of_a_part_is_called_by_its_name(tmp_path):
     )
     found = eomgen.solve(eomgen.load(read(tmp_path, HEXAPOD, leg=part)))
     assert found["leg2_law"].value == pytest.approx(0.2 + 2 + math.sin(0.1))
+
+
+@pytest.mark.slow
+def test_a_report_of_parts_holds(tmp_path):
+    """Its legends name coordinates of parts, leg1_q1, whose letters a page sets with an index in an index."""
+    two = HEXAPOD.replace("i = 6", "i = 2")
+    path, page = read(tmp_path, two, leg=LEG), tmp_path / "page.html"
+    found = CliRunner().invoke(main, ["report", str(path), "-o", str(page), "--time", "0.3"])
+    assert found.exit_code == 0, found.output

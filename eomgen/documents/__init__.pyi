@@ -193,17 +193,11 @@ from eomgen.documents.pages_read import PageLine as PageLine
 # A character of a page, or a formula between dollars
 from eomgen.documents.pages_read import PagePart as PagePart
 
-# Typesetting of symbols
-from eomgen.documents.pages_read import SetLetters as SetLetters
-
 # The formulas of an aligned block: a row that begins with &\quad or &= goes on with the one before it
 from eomgen.documents.pages_read import displayed as displayed
 
 # Words as they are compared: without blanks and brackets, exponents as digits, a dot for a product
 from eomgen.documents.pages_read import spoken as spoken
-
-# Name of the symbol that a formula is; "" of any other formula
-from eomgen.documents.pages_read import typeset_name as typeset_name
 
 # Names in a line of text
 from eomgen.documents.proven_documents import listed as listed

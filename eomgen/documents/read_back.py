@@ -33,6 +33,7 @@ from eomgen.documents.pages_read import (
     tokens_of,
     tree_value,
     typeset,
+    typeset_name,
     unlike_words,
 )
 from eomgen.documents.statements import (
@@ -217,6 +218,11 @@ class PageComparison:
     def tables(self) -> dict[str, TableFunction]:
         """The tables of values that its formulas call, with primes where one is differentiated."""
         return tables_called(self.document)
+
+    def name_set(self, tex: str) -> str:
+        """The name of the symbol that a formula is, also where it is not said which letters stand upright; ""."""
+        leaning = " ".join(_leaning(tokens_of(tex)))
+        return typeset_name(tex, self.letters) or typeset_name(leaning, self.leaning_letters)
 
     def checks(self, wanted: Sequence[Wanted], blocks: Sequence[PageBlock]) -> Iterator[Check]:
         """Checks that each block of the page is the required one; with unmade checks of what could not be read."""

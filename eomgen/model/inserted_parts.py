@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
@@ -174,6 +174,7 @@ def put_in(made: Expanded, name: str, spec: Mapping[str, Any], part: Expanded, d
         own = f"{name}_{key}"
         tables[COUNTED][own] = _with_value(tables[COUNTED][own], x)
         made.places[(COUNTED, own, "value")] = made.origin((*path, "set", key))
+    _leave_out(tables, (f"{name}_{count}" for count in part.counts))
     _take_weights(made.tables, tables)
     _merge(made, tables, name, seat)
     for at, place in part.places.items():
@@ -202,7 +203,12 @@ def _take_weights(tables: Mapping[str, Any], part: dict[str, Any]) -> None:
         return
     left = {key: x for key, x in part["forces"].items() if general(x)}
     part["forces"] = {key: x for key, x in part["forces"].items() if key not in left}
-    for name in set(_NAME.findall(repr(left))) & part[COUNTED].keys():
+    _leave_out(part, _NAME.findall(repr(left)))
+
+
+def _leave_out(part: dict[str, Any], names: Iterable[str]) -> None:
+    """Leaves parameters of a part out that nothing of it needs."""
+    for name in set(names) & part[COUNTED].keys():
         if len(re.findall(rf"\b{name}\b", repr(part))) == 1:  # its own declaration
             del part[COUNTED][name]
 

@@ -17,12 +17,10 @@ from eomgen.documents import (
     Formula,
     PageComparison,
     PageLine,
-    SetLetters,
     Wanted,
     flat,
     formula_said,
     spoken,
-    typeset_name,
     wanted_of,
 )
 from eomgen.model import Unit
@@ -48,6 +46,8 @@ SEEN = 1.5  # units of a picture: a curve may pass its points by that much, corn
 _BRACKETS = str.maketrans("", "", "[],;")  # a matrix by rows or whole, cases apart
 _FEW = re.compile(r"the largest, at (\d+) of (\d+)")
 _UNIT = re.compile(r" \[([^\]]*)\]")
+NameOf = Callable[[str], str]
+"""formula of LaTeX -> name of the symbol that it is"""
 READERS: Mapping[str, Callable[[str], ReadReport]] = {
     ".html": html_report,
     ".tex": latex_report,
@@ -82,7 +82,7 @@ def report_read_back(report: Report, files: FilesByName, form: str, run: Traject
         yield from _copied(report, read)
         yield from _carried(report, read)
     if run is not None and len(run.t):
-        yield from _of_run(report, comparison.letters, read, run)
+        yield from _of_run(report, comparison.name_set, read, run)
 
 
 def _wanted(report: Report, form: str) -> Iterator[Wanted]:
@@ -157,19 +157,19 @@ def _carried(report: Report, read: ReadReport) -> Iterator[Check]:
 # -- curves and tables ---------------------------------------------------------------------------------------------
 
 
-def _of_run(report: Report, letters: SetLetters, read: ReadReport, run: Trajectory) -> Iterator[Check]:
+def _of_run(report: Report, name_of: NameOf, read: ReadReport, run: Trajectory) -> Iterator[Check]:
     tally, legends = Tally(CURVES, BY_AXES), dict(read.legends)
     for caption, lines in read.legends:
         styles = [style for style, _ in lines]
         alike = len(set(styles)) < len(styles) <= LOOKS
         tally.add(f"legend of {caption[:30]}", partial(str, "curves that look alike" if alike else ""))
     for caption, curves in read.drawings:
-        named = {style: _named(line, letters) for style, line in legends.get(caption, ())}
+        named = {style: _named(line, name_of) for style, line in legends.get(caption, ())}
         tally.add(caption.partition(" over")[0], partial(_unlike_curves, run, caption, curves, named))
         if (few := _FEW.search(caption)) is not None and int(few[1]) >= int(few[2]):
             tally.add(few[0], partial(str, "that is all of them"))
     if read.drawings and not any("not drawn" in words or "the largest" in words for words in legends):
-        tally.add("drawings", partial(_left_out, run, legends, letters))
+        tally.add("drawings", partial(_left_out, run, legends, name_of))
     for name, content, columns in read.files:
         if name.endswith(".csv"):
             tally.add(name, partial(_unlike_table, run, content, columns))
@@ -178,9 +178,9 @@ def _of_run(report: Report, letters: SetLetters, read: ReadReport, run: Trajecto
     return tally.checks()
 
 
-def _left_out(run: Trajectory, legends: Mapping[str, Sequence[tuple[str, PageLine]]], letters: SetLetters) -> str:
+def _left_out(run: Trajectory, legends: Mapping[str, Sequence[tuple[str, PageLine]]], name_of: NameOf) -> str:
     """First coordinate or reaction without a curve; "" if all have one."""
-    drawn = {spoken(_named(line, letters)) for named in legends.values() for _, line in named}
+    drawn = {spoken(_named(line, name_of)) for named in legends.values() for _, line in named}
     known = [*run.coordinates, *(name for name, column in run.reactions.items() if np.nan_to_num(column).any())]
     return next((f"no curve of {name}" for name in known if spoken(name) not in drawn), "")
 
@@ -189,10 +189,10 @@ def _other_text(content: bytes, right: str) -> str:
     return "" if content.decode() == right else "another text than the model's"
 
 
-def _named(line: PageLine, letters: SetLetters) -> str:
+def _named(line: PageLine, name_of: NameOf) -> str:
     """The name of a column that a legend says."""
     if len(line) == 1 and line[0].tex:
-        return typeset_name(line[0].tex, letters)
+        return name_of(line[0].tex)
     return "".join(part.character for part in line)
 
 
