@@ -259,7 +259,7 @@ DOORS = {  # rooms that are imported through what their stub names, and how many
     "mechanics.start": 12,
     "mechanics.free_bodies": 30,
     "mechanics.impacts": 6,
-    "mechanics.statics": 27,
+    "mechanics.statics": 28,
     "mechanics.integrals": 8,
     "mechanics.instant": 18,
     "mechanics.equilibrium": 15,
@@ -374,7 +374,7 @@ def house():
 
 def test_a_newcomer_has_no_more_to_know_than_was_reached(house):
     """Modules outside the seams, lines of the longest, modules of one importer, names of lower rooms used elsewhere."""
-    assert len(house.chapters) <= 363
+    assert len(house.chapters) <= 364
     assert max(m.lines for m in house.modules.values()) <= 700
     assert len(house.private) <= 59
     assert len(house.taken_from(("symbolic", "model", "mechanics", "codegen", "simulation"))) <= 609
@@ -432,7 +432,7 @@ def test_what_is_derived_of_a_model_is_cached_by_its_study_and_few_others(house)
     assert found.pop("study.study.Study") == max(house.bundles, key=lambda each: each[1])[1]
     assert {name: k for name, k in found.items() if k > READERS.get(name, 6)} == {}
     assert READERS.keys() <= found.keys()
-    assert len(found) <= 66
+    assert len(found) <= 67
 
 
 def test_a_bundle_is_seen_by_whatever_it_caches(house, tmp_path):

@@ -135,8 +135,21 @@ class _Seen:
         """Components of the normal force, k x n; none of a joint with friction of constant size."""
         if contact.size is not None:
             return np.zeros((0, len(self.track[0])))
+        if any(c.owner == contact.body and c.label == "n 1" for c in self.model.reactions.components):
+            return self._across(contact)
         across = ("x", "y", "z") if contact.of_joint else ()
         return self._forces(contact, ("n", "n 1", "n 2", "tension", "couple", *across))
+
+    def _across(self, contact: Contact) -> np.ndarray:
+        """The size of the force of a slide or path in space across its way, 1 x n: R less its part along."""
+        link = self.model.system.motion.link(contact.body)
+        way = np.array([self._along(x) for x in link.pose.R @ link.S[contact.variable][1]])
+        names, found = self._columns
+        R = found[:, [names.index(f"reaction_{axis}({contact.body})") for axis in "xyz"]].T
+        across = np.cross(R, way / np.linalg.norm(way, axis=0), axis=0)
+        if np.isnan(across).all():
+            raise NoValue("its force has no single value")
+        return np.asarray(np.linalg.norm(across, axis=0)[None, :])
 
     def _forces(self, contact: Contact, labels: tuple[str, ...]) -> np.ndarray:
         """Components of a contact's force, k x n."""

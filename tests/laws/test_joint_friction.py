@@ -302,3 +302,25 @@ def test_several_ways_to_go_on_from_rest_are_named():
     assert "leaves 2 ways to go on from rest: 'upper' sticks, 'lower' slips back; or" in result.message
     one = run(two(-1.488, -0.563, "torque = 4.245, static = 8.614", "torque = 0.333, static = 0.675"), 0.01)
     assert (senses(one, "upper")[0], senses(one, "lower")[0]) == (1, 0)
+
+
+def ranges(text: str) -> list[dict]:
+    return eomgen.statics(eomgen.loads(text)).entries()["rest_range"]
+
+
+def test_statics_gives_the_range_of_rest():
+    """|sin q| <= mu_s r/a, m g (l/2) |sin q| <= T_s; on a slope tan(alpha) <= mu_s holds anywhere."""
+    (found,) = ranges(LOADED.replace("start = 1 ", "start = 0.02 "))
+    assert found["name"] == "q" and found["condition"] == "abs(1/2*l*sin(q)) <= mu*r"
+    assert (found["low"], found["high"]) == pytest.approx((-0.060036058, 0.060036058), abs=1e-9)
+    (found,) = ranges(HINGE.replace("start = 1 ", "start = 0.1 ").replace("T_c = 1", "T_c = 2"))
+    assert found["high"] == pytest.approx(math.asin(4 / G), abs=1e-12)
+    assert ranges(RAMP.replace("speed = -1", "speed = 0")) == [
+        {"name": "s", "low": None, "high": None, "condition": "tan(alpha) <= mu_s"}
+    ]
+
+
+def test_statics_names_a_joint_that_cannot_hold():
+    found = eomgen.statics(eomgen.loads(HINGE))
+    assert found.broken == ("the joint 'rod' slides: it would need more friction than it can have",)
+    assert ranges(HINGE)[0]["high"] is None

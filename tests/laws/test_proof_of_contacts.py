@@ -194,8 +194,10 @@ def along_the_gap(scene, points, along=None):
     return replace(line, rate=line.rate * line.length)
 
 
-def stiffer(motion, link):
-    return [replace(e, potential=2 * e.potential, effort=2 * e.effort - e.drive) for e in own_efforts(motion, link)]
+def stiffer(motion, link, modes):
+    return [
+        replace(e, potential=2 * e.potential, effort=2 * e.effort - e.drive) for e in own_efforts(motion, link, modes)
+    ]
 
 
 own_loads, own_turn, own_twist, own_stretch = Damper.loads, TorsionDamper.loads, TorsionSpring._twist, Spring._stretch

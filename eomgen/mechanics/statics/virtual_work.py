@@ -27,7 +27,19 @@ from eomgen.mechanics.free_bodies import (
     named_reactions,
 )
 from eomgen.mechanics.kinematics import SystemScene
-from eomgen.model import FUNCTIONS, Couple, PointForce, SpreadLoad, UniformField, Unit, ends_requested, nearest
+from eomgen.mechanics.statics.ranges import RestRange, ranges_of_rest
+from eomgen.model import (
+    FUNCTIONS,
+    Contact,
+    Couple,
+    JointFriction,
+    PointForce,
+    SpreadLoad,
+    UniformField,
+    Unit,
+    ends_requested,
+    nearest,
+)
 from eomgen.symbolic.exact import equal_at_random_states, simplest
 from eomgen.symbolic.expression import (
     Call,
@@ -318,6 +330,9 @@ class StaticReactions:
         found = []
         for contact in self.system.scope.model.contacts:
             name = contact.name
+            if isinstance(contact.friction, JointFriction):
+                found += self._of_joint(contact)
+                continue
             normal, pull = (_value(self, f"{kind}({name})") for kind in ("reaction_n", "tension"))
             if contact.unilateral and normal is None and pull is None:  # the stop of a hinge
                 normal = _value(self, f"reaction_couple({name})")
@@ -333,6 +348,24 @@ class StaticReactions:
                 most = self.system.scope.value(contact.mu) * function("abs", normal)
                 found.append(RestCondition(name, "sticks", most - function("abs", along)))
         return tuple(found)
+
+    @cached_property
+    def ranges(self) -> tuple[RestRange, ...]:
+        """The ranges in which dry friction keeps it at rest."""
+        return ranges_of_rest(self.system)
+
+    def _of_joint(self, contact: Contact) -> list[RestCondition]:
+        """Condition for a joint with dry friction to stick, where its reactions are determinate."""
+        along = _value(self, f"friction({contact.name})")
+        across = [_value(self, f"reaction_{k}({contact.body})") for k in ("n", "x", "y", "z")]
+        N: Scalar | None = 1 if contact.size is not None else _resultant([x for x in across if x is not None] or [None])
+        if contact.kind == "prismatic" and across[0] is None and N is not None and along is not None:
+            N = sqrt(N * N - along * along)  # in space the force is all that the joint carries
+        if along is None or N is None or contact.grip is None:
+            return []
+        pressed = simplest(N, Work.ANSWER, self.system.scope.positive)
+        most = self.system.scope.value(contact.grip) * function("abs", pressed)
+        return [RestCondition(contact.name, "holds", most - function("abs", along))]
 
     @property
     def loads(self) -> tuple[Acting, ...]:
@@ -433,7 +466,7 @@ class RestCondition:
 
     Args:
         constraint: the contact, or the body on a path.
-        kind: "pushes", "pulls" or "sticks".
+        kind: "pushes", "pulls", "sticks" or, of a joint, "holds".
         margin: it is not negative where the condition holds [N].
     """
 
@@ -448,6 +481,7 @@ class RestCondition:
             "pushes": f"contact '{self.constraint}' would have to pull",
             "pulls": f"'{self.constraint}' would have to push",
             "sticks": f"contact '{self.constraint}' slides: it would need more friction than mu N",
+            "holds": f"the joint '{self.constraint}' slides: it would need more friction than it can have",
         }[self.kind]
 
 

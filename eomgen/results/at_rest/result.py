@@ -71,7 +71,7 @@ from eomgen.results.at_rest.section_steps import (
     section_steps,
     sections_of,
 )
-from eomgen.results.at_rest.steps import contacts_step, reported_work, statics_derivation, sum_name
+from eomgen.results.at_rest.steps import contacts_step, ranges_step, reported_work, statics_derivation, sum_name
 from eomgen.study import study_at_rest
 from eomgen.symbolic.expression import Node, Scalar
 from eomgen.symbolic.numeric import tolerances
@@ -158,9 +158,8 @@ class Statics(Result):
     def certify(self) -> Certificate:
         """Check the two ways, every body's balance, section forces from the other end, influence lines by loads."""
         reported = reported_sections(self.sections, self.derivation.steps, section_payload(self.sections))
-        return certify_structure(
-            self.found, self.sections.found, self.influence, reported=reported, works=self._reported_works()
-        )
+        sections, works = self.sections.found, self._reported_works()
+        return certify_structure(self.found, sections, self.influence, reported=reported, works=works)
 
     def _reported_works(self) -> Iterator[ReportedWork]:
         """Works of some reactions in the plane, evenly spread over all."""
@@ -180,7 +179,7 @@ class Statics(Result):
     @cached_property
     def derivation(self) -> Document:
         """The solution, step by step."""
-        contacts = contacts_step(self.conditions, self.broken)
+        contacts = (*contacts_step(self.conditions, self.broken), *ranges_step(self.found.ranges))
         influence = () if self.influence is None else (influence_step(self.influence),)
         return statics_derivation(self.found, self.values, (*contacts, *section_steps(self.sections), *influence))
 
@@ -212,6 +211,7 @@ class Statics(Result):
             "influence": None if self.influence is None else influence_payload(self.influence),
             "contacts": [{"tie": c.constraint, "kind": c.kind, "margin": to_text(c.margin)} for c in self.conditions],
             "broken": list(self.broken),
+            "rest_range": [vars(each) for each in self.found.ranges],
             "agree": self.ok,
         }
 

@@ -41,6 +41,7 @@ from eomgen.mechanics.free_bodies import (
 from eomgen.mechanics.statics import (
     Acting,
     RestCondition,
+    RestRange,
     StaticReaction,
     StaticReactions,
     StaticSum,
@@ -291,7 +292,12 @@ def agreement_step(statics: StaticReactions) -> tuple[Step, ...]:
     )
 
 
-MARGINS = {"pushes": "its normal force", "pulls": "its tension", "sticks": "mu |N| less its friction"}
+MARGINS = {
+    "pushes": "its normal force",
+    "pulls": "its tension",
+    "sticks": "mu |N| less its friction",
+    "holds": "its largest friction less what holds",
+}
 
 
 def contacts_step(conditions: Sequence[RestCondition], broken: Sequence[str]) -> tuple[Step, ...]:
@@ -305,6 +311,21 @@ def contacts_step(conditions: Sequence[RestCondition], broken: Sequence[str]) ->
         *(prose(f"It is not at rest like this: {words}.") for words in broken),
     ]
     return (Step("contacts", "Contacts: FAILED" if broken else "Contacts", tuple(statements)),)
+
+
+def ranges_step(ranges: Sequence[RestRange]) -> tuple[Step, ...]:
+    """Step with the limits of impending motion, where dry friction holds."""
+    if not ranges:
+        return ()
+    rows = tuple((each.name, _limit(each.low), _limit(each.high), each.condition) for each in ranges)
+    words = prose(
+        "Dry friction keeps it at rest between these limits, the others as they stand; from them on it moves:"
+    )
+    return (Step("rest range", "Range of rest", (words, Grid(("of", "from", "to", "while"), rows))),)
+
+
+def _limit(value: float | None) -> Cell:
+    return "" if value is None else f"{value:.10g}"
 
 
 def _or_open(value: Scalar | None) -> Cell:
