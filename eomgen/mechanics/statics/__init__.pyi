@@ -55,9 +55,6 @@ from eomgen.mechanics.statics.influence import InfluenceSpan as InfluenceSpan
 # The axis of a body
 from eomgen.mechanics.statics.member_axis import MemberAxis as MemberAxis
 
-# The range in which something rests
-from eomgen.mechanics.statics.ranges import RestRange as RestRange
-
 # One load of the structure
 from eomgen.mechanics.statics.virtual_work import Acting as Acting
 

@@ -179,7 +179,7 @@ class Statics(Result):
     @cached_property
     def derivation(self) -> Document:
         """The solution, step by step."""
-        contacts = (*contacts_step(self.conditions, self.broken), *ranges_step(self.found.ranges))
+        contacts = (*contacts_step(self.conditions, self.broken), *ranges_step(self.found))
         influence = () if self.influence is None else (influence_step(self.influence),)
         return statics_derivation(self.found, self.values, (*contacts, *section_steps(self.sections), *influence))
 

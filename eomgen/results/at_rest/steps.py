@@ -41,7 +41,6 @@ from eomgen.mechanics.free_bodies import (
 from eomgen.mechanics.statics import (
     Acting,
     RestCondition,
-    RestRange,
     StaticReaction,
     StaticReactions,
     StaticSum,
@@ -313,11 +312,11 @@ def contacts_step(conditions: Sequence[RestCondition], broken: Sequence[str]) ->
     return (Step("contacts", "Contacts: FAILED" if broken else "Contacts", tuple(statements)),)
 
 
-def ranges_step(ranges: Sequence[RestRange]) -> tuple[Step, ...]:
+def ranges_step(statics: StaticReactions) -> tuple[Step, ...]:
     """Step with the limits of impending motion, where dry friction holds."""
-    if not ranges:
+    if not statics.ranges:
         return ()
-    rows = tuple((each.name, _limit(each.low), _limit(each.high), each.condition) for each in ranges)
+    rows = tuple((each.name, _limit(each.low), _limit(each.high), each.condition) for each in statics.ranges)
     words = prose(
         "Dry friction keeps it at rest between these limits, the others as they stand; from them on it moves:"
     )
