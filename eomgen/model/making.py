@@ -301,9 +301,19 @@ def draft_of(cls: Any, raw: Mapping[str, Any], title: str, found: list[Diagnosti
     if TABLES in raw:
         raw = with_functions(raw, functions_of_tables(raw[TABLES], found), found)
     draft = read_part(cls, {"name": title, **raw}, (), found, known=("eomgen",))
+    found[:] = map(_of_outputs_alone, found)
     seated = draft.altered(bodies=_seated(draft))
     limited = with_limits(seated)
     return seated.altered(constraints=Table(limited)) if len(limited) > len(draft.constraints or {}) else seated
+
+
+def _of_outputs_alone(problem: Diagnostic) -> Diagnostic:
+    """The same with a fix for a function of outputs where none may stand: no product was meant."""
+    called = re.fullmatch(r"unknown function '(\w+)'", problem.what)
+    if called is None or called[1] not in FUNCTIONS or problem.path[0] == "outputs":
+        return problem
+    fix = f"{called[1]} is for [outputs]: write here what it is, in coordinates, rates, accelerations"
+    return replace(problem, fix=fix)
 
 
 def _seated(model: Any) -> Table[Any]:

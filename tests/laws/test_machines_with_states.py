@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
+from scipy.optimize import brentq
 
 import eomgen
 
@@ -71,6 +72,16 @@ def test_oil_in_a_cylinder_pushes_as_scipy_says():
 
     due = solve_ivp(rate, (0, 0.3), [0, 0, 20e5, 30e5], method="Radau", rtol=1e-11, atol=1e-9).y[:, -1]
     assert run_of("hydraulic_cylinder", 0.3).x[-1] == pytest.approx(due, rel=1e-6)
+
+
+def test_oil_at_rest_leaks_past_the_piston_as_much_as_the_valve_lets_through():
+    """p_1 + p_2 = p_s + p_0 of two equal openings; Q((p_s - p_1)) = c_L (p_1 - p_2); A_1 p_1 - A_2 p_2 = k x."""
+    total, through = 162e5, 0.4 * 40e-3 / 60
+    across = brentq(lambda d: through * np.sqrt(((total - d) / 2 - 2e5) / 35e5) - 2e-12 * d, 0, 158e5, xtol=1e-6)
+    p1, p2 = (total + across) / 2, (total - across) / 2
+    (place,) = eomgen.statics(eomgen.load(MODELS / "hydraulic_cylinder.toml")).entries()["equilibria"]
+    found = [x.value for x in (*place["coordinates"].values(), *place["states"].values())]
+    assert found == pytest.approx([(1.2e-3 * p1 - 0.8e-3 * p2) / 6e4, p1, p2], rel=1e-9)
 
 
 def test_a_brake_turns_all_its_work_into_heat():
@@ -143,3 +154,59 @@ def test_a_tyre_builds_up_its_side_force_over_a_length():
     still = run_of(text.replace("value = 12", "value = 0"), 0.5)
     w = np.sqrt(375)
     assert still["x"] == pytest.approx(0.1 + 0.3 * np.sin(w * still.t) / w, rel=1e-8)
+
+
+BOUNCING = """
+eomgen = 1
+space = "plane"
+[parameters]
+m = 0.5
+e = 0.6
+g = 9.81
+[coordinates]
+y = 1
+[states]
+c = { start = 0.2, rate = "y' - 3*c", about = "what is left of the speed" }
+p = { rate = "20*(y - p)", about = "the place, late" }
+[bodies.ball]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "prismatic", axis = [0, 1], displacement = "y" }
+[constraints.floor]
+kind = "support"
+point = "ball.origin"
+normal = [0, 1]
+at = [0, 0]
+unilateral = true
+restitution = "e"
+[forces.weight]
+kind = "gravity"
+acceleration = [0, "-g"]
+[forces.jet]
+kind = "force"
+point = "ball.origin"
+force = [0, "0.1*c - 0.2*p"]
+"""
+
+
+def test_states_go_on_through_impacts_as_they_are():
+    """An impact turns the speed, u+ = -e u-, and leaves z: against scipy with events, over three impacts."""
+
+    def motion(_, x):
+        y, v, c, p = x
+        return v, -9.81 + (0.1 * c - 0.2 * p) / 0.5, v - 3 * c, 20 * (y - p)
+
+    def falls(_, x):
+        return x[0]
+
+    falls.terminal, falls.direction = True, -1
+    t, x, impacts = 0.0, np.array([1.0, 0.0, 0.2, 0.0]), 0
+    while t < 1.4:
+        found = solve_ivp(motion, (t, 1.4), x, events=falls, rtol=1e-11, atol=1e-13)
+        t, x = found.t[-1], found.y[:, -1].copy()
+        if found.status == 1:
+            x[:2] = 1e-15, -0.6 * x[1]
+            impacts += 1
+    run = eomgen.simulate(eomgen.loads(BOUNCING), time=1.4, **FINE)
+    assert impacts == 3
+    assert run.x[-1] == pytest.approx(x, rel=1e-7, abs=1e-8)
+    assert run.certify().ok

@@ -141,12 +141,14 @@ class _Search:
 
     @cached_property
     def _unit(self) -> dict[Node, Fraction]:
-        """Unit of length of each coordinate that is no angle, used while many guesses are tried."""
+        """Unit of length of each coordinate that is no angle, size of each state, used while many guesses are tried."""
         statics, scope = self.statics, self.statics.system.scope
         state = self.floats | dict(zip(statics.q, map(float, self.guess), strict=True))
         unit = unit_of_length(statics.system.motion, state)
         plain = self._angles.union(*scope.quaternions, statics.system.symbols.z)
-        return {} if unit == 1 else {q: unit for q in statics.q if q not in plain}
+        sizes = {z: Fraction(f"{abs(state[z]):.0e}") for z in statics.system.symbols.z if state[z]}
+        lengths = {} if unit == 1 else {q: unit for q in statics.q if q not in plain}
+        return lengths | {z: size for z, size in sizes.items() if size != 1}
 
     @cached_property
     def _units(self) -> np.ndarray:
