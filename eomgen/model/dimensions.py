@@ -56,6 +56,8 @@ class Names:
         self._known |= {name: SECOND.raised(-1) for names in turns for name in names or ()}
         self._known |= {"t": SECOND, "pi": NUMBER}
         self.frictions = {name: "N*m" if turns else "N" for name, turns in catalog.joints_with_friction.items()}
+        closing = ((name, part.impulse_unit(catalog)) for name, part in catalog.table("constraints").items() if part)
+        self.impulses = {name: unit for name, unit in closing if unit}
         self.moves = frozenset((*catalog.table("coordinates"), *catalog.table("states")))
         self.parameters = frozenset(catalog.table("parameters").keys() & self.declared)
 
@@ -76,6 +78,8 @@ class Names:
         found = dimension_of_unit(function.dimension)
         for k in function.per:
             argument, kind = call.args[k], function.kinds[k]
+            if call.name == "impulse" and isinstance(argument, Reference) and argument.name in self.impulses:
+                return _dimension(self.impulses[argument.name])
             if kind == DRY_JOINT and isinstance(argument, Reference):
                 return _dimension(self.frictions[argument.name]) if argument.name in self.frictions else None
             if kind not in PER_NAME or not isinstance(argument, Reference):

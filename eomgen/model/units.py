@@ -97,7 +97,7 @@ def _of_answer(known: Names, part: Output) -> Unit | None:
     function = FUNCTIONS.get(calls[0].name) if len(part.value.code) == len(calls) == 1 else None
     if function is not None and not function.per and function.like is None:
         return Unit.parse(function.unit)
-    if function is not None and function.kinds[:1] == (DRY_JOINT,):
+    if function is not None and (function.kinds[:1] == (DRY_JOINT,) or calls[0].name == "impulse"):
         return _unit(known, part.value.text)
     return _in_si(known.inference.reduced(known.walk().of(part.value)))
 
@@ -110,7 +110,9 @@ def _unit(known: Names, name: str) -> Unit | None:
     call = parse(name, references=True).call
     if call is not None and call.name in FUNCTIONS and not FUNCTIONS[call.name].per:
         return Unit.parse(FUNCTIONS[call.name].unit)
-    if call is not None and call.name == "friction" and (unit := known.frictions.get(str(call.args[0]))):
+    if call is not None and call.name == "impulse" and (unit := known.impulses.get(call.name_at(0))):
+        return Unit.parse(unit)
+    if call is not None and call.name == "friction" and (unit := known.frictions.get(call.name_at(0))):
         return Unit.parse(unit)
     declared = known.declared.get(name.rstrip("'"))
     if declared is not None:

@@ -177,6 +177,10 @@ class Constraint(Part, ABC):
         """True if the ground guides the constrained body, though no force acts at a point of the ground."""
         return False
 
+    def impulse_unit(self, catalog: Catalog) -> str:
+        """The unit of its impulse, where it can close; "" elsewhere."""
+        return "N*s" if getattr(self, "unilateral", False) else ""
+
     def edges(self, scene: LoadContext) -> tuple[Edge, ...]:
         """Quantities that must not vanish, or else the point of contact is undefined; () where there are none."""
         return ()

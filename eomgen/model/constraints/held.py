@@ -327,6 +327,10 @@ class Limit(Constraint):
             what = f"'{min(driven)}' is driven: no stop can hold the joint of '{self.body}' where its motion leads on"
             yield Diagnostic(where, what, "leave out the limits, or the motion")
 
+    def impulse_unit(self, catalog: Catalog) -> str:
+        body = catalog.table("bodies")[self.body]
+        return "N*m*s" if body.joint.limited[self.variable] == "angle" else "N*s"
+
     def rows(self, scene: LoadContext) -> tuple[ConstraintRow, ...]:
         """s - bound >= 0, of an upper one bound - s >= 0; the push along the joint does the work of a unit times s'."""
         sense = -1 if self.upper else 1
