@@ -43,6 +43,7 @@ TAKES = "it gives energy"
 Formula = Annotated[Expression, FormulaRule()]
 Mass = Annotated[Expression, FormulaRule("kg", "nonnegative")]
 Length = Annotated[Expression, FormulaRule("m", "positive")]
+MovingLength = Annotated[Expression, FormulaRule("m", "positive", TIME)]
 Radius = Annotated[Expression, FormulaRule("m", "nonnegative")]
 NaturalLength = Annotated[Expression | str, FormulaRule("m", "nonnegative", TIME, words=("start",))]
 ConstantAngle = Annotated[Expression, FormulaRule("rad")]

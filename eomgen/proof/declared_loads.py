@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
 from random import Random
@@ -560,10 +561,22 @@ class _Strung(InNumbers):
             stated = pushes_of(self.motion, self.state, row.pushes)
             if body := pushed_otherwise(stated, due, size):
                 return f"pulls '{body}' otherwise than it runs"
-            given_out: Any = sum((self._lengthening(*strand) for strand in rope), start=0)
+            given_out: Any = sum((self._lengthening(*strand) for strand in rope), start=-self._paid_out)
             if self._rigid and row.pushes and abs(given_out + self.one(row.velocity)) > tolerances.ZERO_AT_50 * size:
                 return "does not stay as long as it is"
         return self._wrong_length
+
+    @property
+    def _paid_out(self) -> Any:
+        """Rate of the declared length, by the difference of two instants."""
+        if self.thread.length is None:
+            return 0
+        length, t = self._scene.value(self.thread.length), self.system.symbols.t
+        step = fifty_digits().number(Fraction(1, 10**15))
+        before, after = (
+            replace(self, state={**self.state, t: self.one(t) + sign * step}).one(length) for sign in (-1, 1)
+        )
+        return (after - before) / (2 * step)
 
     @property
     def _wrong_length(self) -> str:

@@ -13,19 +13,19 @@ from eomgen.model.constraints.base import Constraint, Thread
 from eomgen.model.constraints.row import ConstraintRow
 from eomgen.model.fields import ListRule, NameRule
 from eomgen.model.forces.load import LoadContext, PointForce
-from eomgen.model.kinds import Flag, Length, Restitution, Text, TwoPoints
+from eomgen.model.kinds import Flag, MovingLength, Restitution, Text, TwoPoints
 from eomgen.symbolic.expression import Call, Fraction, Node, Reference, Scalar, Vector, order, over, sqrt
 
 
 @dataclass(frozen=True, kw_only=True)
 class Link(Constraint):
-    """A massless rod or wire between two points, which keeps their distance; tension positive.
+    """A massless rod or wire between two points, which keeps their distance, or pays it out; tension positive.
 
     One row: the tension. Its gap is (L^2 - r^2) / (2 L), to first order L - r.
 
     Args:
         points: the two ends.
-        length: their distance [m] (None: the one at the start).
+        length: their distance, also as a function of time: a winch (None: the one at the start) [m].
         unilateral: a wire, which can only pull.
         restitution: where it is taut again it rebounds with this share of its speed, 0 to 1 (None: not at all).
     """
@@ -34,7 +34,7 @@ class Link(Constraint):
     pulls: ClassVar[bool] = True
     by_squares: ClassVar[bool] = True
     points: TwoPoints
-    length: Length | None = None
+    length: MovingLength | None = None
     unilateral: Flag = False
     restitution: Restitution | None = None
 
@@ -58,7 +58,11 @@ class Link(Constraint):
         L = self._length(scene, r)
         d = Vector(over(x, L) for x in r)
         pulls = (PointForce(first, d), PointForce(second, -d))
-        return (ConstraintRow(pulls, Fraction(1, 2) * (L - r @ d), component="tension"),)
+        half = Fraction(1, 2)
+        rate = None
+        if self.length is not None and scene.moves((L,)):  # of the gap, where the ends stay
+            rate = half * scene.held_rate(self.length, {}) * (1 + over(r @ r, L * L))
+        return (ConstraintRow(pulls, half * (L - r @ d), rate, component="tension"),)
 
     def _length(self, scene: LoadContext, r: Vector) -> Scalar:
         if self.length is not None:
