@@ -34,6 +34,7 @@ def impact_checks(found: ImpactEquations) -> Iterator[Check]:
     speeds = Tally("what closes leaves with e times its approach, what holds is at rest", "velocities, 50 digits")
     energies = Tally("the loss is the kinetic energy before less that after", "energies by the poses, 50 digits")
     numbers = Tally("the law of impact in numbers gives the same jump", "complementarity in doubles")
+    bodies = Tally("each body moves by the impulses on it", "momenta, 50 digits")
     for seed in SEEDS:
         state = real_state(found.system, Random(seed))
         after = _solved(found, state)
@@ -41,7 +42,9 @@ def impact_checks(found: ImpactEquations) -> Iterator[Check]:
         speeds.add(f"state {seed}", partial(_leaves_otherwise, found, state, after))
         energies.add(f"state {seed}", partial(_lost_otherwise, found, state, after))
         numbers.add(f"state {seed}", partial(_jumps_otherwise, found, state))
-    for tally in (momenta, speeds, energies, numbers):
+        for body in found.of_joints:
+            bodies.add(f"{body}, state {seed}", partial(_body_unbalanced, found, body, state, after))
+    for tally in (momenta, speeds, energies, numbers, bodies):
         yield from tally.checks()
 
 
@@ -83,6 +86,41 @@ def _unbalanced(found: ImpactEquations, state: State, after: Mapping[Node, Any])
         if abs(change - pushed[k]) > tolerances.ZERO_AT_50 * (1 + abs(change)):
             given = f"the impulses give {float(pushed[k]):.10g}"
             return f"along {node.name} the momentum changes by {float(change):.10g}, {given}"
+    return ""
+
+
+def _body_unbalanced(found: ImpactEquations, body: str, state: State, after: Mapping[Node, Any]) -> str:
+    """Message if m (v+ - v-) of a body's mass centre is not the sum of the impulses on it; "".
+
+    Raises:
+        NoValue: a joint of it has no impulse here, or a row acts on coordinates.
+    """
+    motion, names = found.system.motion, [link.name for link in found.system.motion.links]
+    carried = [link.name for link in motion.links if link.parent == names.index(body)]
+    known = {(row.row.constraint, row.row.number) for row in found.rows}
+    rows = [row for row in found.system.constraints.rows if (row.constraint, row.number) not in known]
+    further = {name for row in rows for name, _ in row.wrenches}
+    if (
+        body in further
+        or any(name not in found.of_joints for name in carried)
+        or any(not row.row.wrenches for row in found.rows)
+    ):
+        raise NoValue("not all impulses on it are known")
+    mass = found.system.scope.mass_properties(body)
+    v = motion.velocity((body, mass.com))
+    before, later = (_numbers((mass.m, *v), {**state, **x}) for x in ({}, _later(found, after)))
+    total = [0, *_numbers(found.of_joints[body], state)]
+    for name in carried:
+        total = [0, *(a - b for a, b in zip(total[1:], _numbers(found.of_joints[name], state), strict=True))]
+    for row in found.rows:
+        for name, wrench in row.row.wrenches:
+            if name == body:
+                force = _numbers(motion.link(body).pose.R @ wrench.f, state)
+                total = [0, *(a + after[row.impulse] * b for a, b in zip(total[1:], force, strict=True))]
+    for axis in (1, 2, 3):
+        change = before[0] * (later[axis] - before[axis])
+        if abs(change - total[axis]) > tolerances.ZERO_AT_50 * (1 + abs(change)):
+            return f"its momentum changes by {float(change):.10g}, the impulses give {float(total[axis]):.10g}"
     return ""
 
 

@@ -10,6 +10,7 @@ from eomgen.documents import (
     Formula,
     Grid,
     Law,
+    Name,
     Reader,
     Result,
     Statement,
@@ -87,9 +88,16 @@ class ImpactResult(Result):
     def _solution_step(self) -> Step:
         found, reader = self.equations, self._reader
         impulses = [(row.impulse, found.solution[row.impulse]) for row in found.rows]
+        joints = [
+            (Name(f"impulse_{axis}", body), x)
+            for body, vector in found.of_joints.items()
+            for axis, x in zip("xyz"[: 2 if self.model.space == "plane" else 3], vector, strict=False)
+        ]
+        of_joints = (prose("The impulses of the joints, each on its body:"), *page(reader, joints)) if joints else ()
         statements = (
             prose("The impulses, which must push or pull as their contacts can:"),
             *page(reader, impulses),
+            *of_joints,
             prose("The speeds after the impact:"),
             *page(reader, [(x, found.solution[x]) for x in found.after]),
             prose("The kinetic energy that is lost:"),
@@ -104,6 +112,7 @@ class ImpactResult(Result):
     def entries(self) -> dict[str, Any]:
         """Entries of the JSON document."""
         found = self.equations
+        axes = 2 if self.model.space == "plane" else 3
         equations = [f"{to_text(a)} = {to_text(b)}" for a, b in (*found.balances, *found.conditions)]
         return {
             "name": self.model.name,
@@ -112,6 +121,7 @@ class ImpactResult(Result):
                 "equations": equations,
                 "unknowns": [x.name for x in found.solution],
                 "impulses": {name: to_text(x) for name, x in found.impulses.items()},
+                "joints": {name: [to_text(x) for x in vector][:axes] for name, vector in found.of_joints.items()},
                 "after": {u.name: to_text(found.solution[x]) for u, x in zip(found.u, found.after, strict=True)},
                 "loss": to_text(found.loss),
             },

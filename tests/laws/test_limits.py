@@ -11,6 +11,7 @@ from scipy.integrate import solve_ivp
 
 import eomgen
 from eomgen.errors import ModelError
+from eomgen.results import impact
 
 G = 9.81
 PENDULUM = """
@@ -82,6 +83,16 @@ Y = { value = "impulse_y(rod)", at = "q = lo" }
     assert found["X"].value == pytest.approx(across * math.cos(0.3), rel=1e-9)
     assert found["Y"].value == pytest.approx(-across * math.sin(0.3), rel=1e-9)
     assert found.certify().ok
+
+
+@pytest.mark.slow
+def test_the_impact_on_a_stop_names_the_impulses_of_all_joints():
+    """m (v+ - v-) of each body is the sum of the impulses on it: of mast and arm in space too."""
+    found = impact(eomgen.loads(SPACE))
+    assert found.entries()["impact"]["joints"].keys() == {"mast", "arm"}
+    certificate = found.certify()
+    bodies = [check for check in certificate.checks if check.name == "each body moves by the impulses on it"]
+    assert certificate.ok and [check.status for check in bodies] == ["holds"]
 
 
 @pytest.mark.slow

@@ -19,9 +19,10 @@ from eomgen.mechanics.free_bodies import Reactions
 from eomgen.mechanics.kinematics import ContactMode, SystemInertia
 from eomgen.model import Contact, Model
 from eomgen.symbolic.exact import book_form, cramer
-from eomgen.symbolic.expression import Node, Scalar, ScalarRow, inner, is_zero, jacobian, over, substituted
+from eomgen.symbolic.expression import Node, Scalar, ScalarRow, Vector, inner, is_zero, jacobian, over, substituted
 from eomgen.symbolic.numeric import Work, transplanted
 
+MOST_JOINTS = 6  # whose impulses are written out for a reader
 OPEN = ContactMode(closed=False)
 
 
@@ -141,6 +142,22 @@ class ImpactEquations:
                 lost = lost - self.solution[row.impulse] * (1 - row.e) * inner(row.J, self.u)
         return book_form(over(lost, 2), Work.ANSWER)
 
+    @cached_property
+    def of_joints(self) -> dict[str, Vector]:
+        """Impulse of each joint on its child, ground axes, of up to MOST_JOINTS bodies; {} where they do not follow."""
+        links = [link for link in self.system.motion.links if link.joint is not None and link.joint.carries_reaction]
+        axes = range(2 if self.system.scope.model.space == "plane" else 3)
+        if len(links) > MOST_JOINTS:
+            return {}
+        found: dict[str, Vector] = {}
+        for link in links:
+            try:
+                x, y, *z = (self.impulse_along(link.name, axis) for axis in axes)
+            except DerivationError:  # it carries no force, or is not determined
+                continue
+            found[link.name] = Vector((x, y, *(z or (0,))))
+        return found
+
     def impulse_along(self, owner: str, axis: int) -> Scalar:
         """Impulse of a joint or constraint along an axis of the ground, on its child.
 
@@ -169,7 +186,9 @@ class ImpactEquations:
         for lam, row in zip(symbols.lam, closed.constraints.closing, strict=True):
             moved[lam] = by_row.get((row.constraint, row.number), 0)
         struck, resting = (substituted((reaction,), known)[0] for known in (moved, still))
-        return book_form(struck - resting, Work.ANSWER)
+        own = self.system.symbols
+        here: dict[str, Scalar] = {x.name: x for x in (*own.x, own.t)} | dict(own.parameters)
+        return transplanted((book_form(struck - resting, Work.ANSWER),), self.system.scope.graph, here)[0]
 
     @property
     def _is_driven(self) -> bool:
