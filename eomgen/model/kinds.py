@@ -335,6 +335,35 @@ class SlideFriction(PushFriction):
     smooth: SlidingSpeed | None = None
 
 
+@dataclass(frozen=True, kw_only=True)
+class SleeveFriction(Part):
+    """Dry friction of what turns about an axis and slides along it, each alone.
+
+    Args:
+        displacement: against the slide.
+        angle: against the turn.
+    """
+
+    title: ClassVar[str] = "friction"
+    displacement: Annotated[PushFriction, PartRule(PushFriction)] | None = None
+    angle: Annotated[TurnFriction, PartRule(TurnFriction)] | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlanarFriction(Part):
+    """Dry friction of what moves in a plane, along each variable alone.
+
+    Args:
+        x, y: against each slide.
+        angle: against the turn.
+    """
+
+    title: ClassVar[str] = "friction"
+    x: Annotated[PushFriction, PartRule(PushFriction)] | None = None
+    y: Annotated[PushFriction, PartRule(PushFriction)] | None = None
+    angle: Annotated[TurnFriction, PartRule(TurnFriction)] | None = None
+
+
 # -------- limits ----------------------------------------------------------------------------------------------
 # Limits of a joint's variables: rigid stops, each a constraint that can only push.
 

@@ -26,6 +26,7 @@ from eomgen.model.joints.base import (
     Effort,
     Joint,
     Move,
+    PushAlong,
     Scalars,
     SlideAlong,
     TurnAbout,
@@ -37,7 +38,16 @@ from eomgen.model.joints.base import (
     unit,
     vector,
 )
-from eomgen.model.kinds import Angle, ConstantAngle, Displacement, PlanarLimits, Restitution, SpaceDirection, ValueOf
+from eomgen.model.kinds import (
+    Angle,
+    ConstantAngle,
+    Displacement,
+    PlanarFriction,
+    PlanarLimits,
+    Restitution,
+    SpaceDirection,
+    ValueOf,
+)
 from eomgen.model.part import PartRule
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression import Expression, Matrix, Pose, Vector, as_expression, cos, sin
@@ -196,6 +206,7 @@ class Planar(Joint):
         angle: of the child against the parent [rad].
         limits: rigid stops: { x = [least, largest], y = ..., angle = ... }, "inf" for none.
         restitution: of the stops: with this share of its speed it rebounds, 0 to 1 (None: not at all).
+        friction: dry: { x = { force = F }, y = ..., angle = { torque = T } }, each with `static` or `smooth`.
     """
 
     limited: ClassVar[tuple[str, ...]] = ("x", "y", "angle")
@@ -205,6 +216,7 @@ class Planar(Joint):
     angle: Angle
     limits: Annotated[PlanarLimits, PartRule(PlanarLimits)] | None = None
     restitution: Restitution | None = None
+    friction: Annotated[PlanarFriction, PartRule(PlanarFriction)] | None = None
 
     def turns(self) -> tuple[Expression, ...]:
         return (self.angle,)
@@ -229,6 +241,11 @@ class Planar(Joint):
 
     def efforts(self) -> tuple[Effort | None, ...]:
         return (None, None, None)
+
+    def pushes(self) -> tuple[PushAlong, ...]:
+        law = self.friction
+        ways = zip(self.variables(""), ("x", "y", "angle"), strict=True)
+        return () if law is None else tuple(PushAlong(way=way, friction=getattr(law, name)) for way, name in ways)
 
 
 PLANE_COMPLEMENT = (angular(X), angular(Y), linear(Z))

@@ -42,6 +42,7 @@ from eomgen.model.kinds import (
     Restitution,
     RestLength,
     RotorInertia,
+    SleeveFriction,
     SleeveLimits,
     SlideFriction,
     SlideInertia,
@@ -308,6 +309,7 @@ class Cylindrical(AxisJoint):
         force, torque: along n and about it on the child, minus on the parent [N, N m].
         limits: rigid stops: { displacement = [least, largest], angle = [least, largest] }.
         restitution: of the stops: with this share of its speed it rebounds, 0 to 1 (None: not at all).
+        friction: dry: { displacement = { force = F }, angle = { torque = T } }, each with `static` or `smooth`.
     """
 
     limited: ClassVar[tuple[str, ...]] = (
@@ -323,6 +325,7 @@ class Cylindrical(AxisJoint):
     torque: Torque | None = None
     limits: Annotated[SleeveLimits, PartRule(SleeveLimits)] | None = None
     restitution: Restitution | None = None
+    friction: Annotated[SleeveFriction, PartRule(SleeveFriction)] | None = None
 
     def turns(self) -> tuple[Expression, ...]:
         return (self.angle,)
@@ -343,8 +346,11 @@ class Cylindrical(AxisJoint):
         return (Effort(self.force), Effort(self.torque))
 
     def pushes(self) -> tuple[PushAlong, ...]:
-        along, about = self.displacement, self.angle
-        return (PushAlong(way=along, push=self.force), PushAlong(way=about, push=self.torque))
+        sliding, turning = (None, None) if self.friction is None else (self.friction.displacement, self.friction.angle)
+        return (
+            PushAlong(way=self.displacement, push=self.force, friction=sliding),
+            PushAlong(way=self.angle, push=self.torque, friction=turning),
+        )
 
 
 # -------- screw -----------------------------------------------------------------------------------------------
