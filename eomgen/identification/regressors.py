@@ -22,7 +22,7 @@ from eomgen.identification.base_parameters import MOMENTS, PLACES, BaseParameter
 from eomgen.identification.proof_of_groups import certify_regressor
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies import SystemFriction
-from eomgen.mechanics.kinematics import SystemInertia
+from eomgen.mechanics.kinematics import ContactMode, SystemInertia
 from eomgen.model import Model, ModelOrPath, UniformField
 from eomgen.pipeline import derive
 from eomgen.proof import Certificate
@@ -134,7 +134,7 @@ def regressor_of(system: System) -> Regressor:
             "say it by a force with a parameter of its own",
         )
     size = len(system.symbols.u)
-    columns = [*_bodies(system), *_joints(system)]
+    columns = [*_bodies(system), *_joints(system), *_frictions(system)]
     rest = tuple(x - y for x, y in zip(_rest(system), SystemInertia(system.motion).given_inertia, strict=True))
     columns += [(name, system.symbols.parameters[name], row) for name, row in _linear(system, rest).items()]
     known = substituted(rest, {x: 0 for name, x, _ in columns if name in system.symbols.parameters and type(x) is Node})
@@ -207,6 +207,18 @@ def _joints(system: System) -> Iterator[Column]:
                 value = motion.scope.value(declared)
                 label = f"{name}({link.name})" if len(efforts) == 1 else f"{name}({link.name}, {k + 1})"
                 yield label, value, tuple(row.get(i, 0) * along[name] for i in range(size))
+
+
+def _frictions(system: System) -> Iterator[Column]:
+    """Dry friction of constant size in joints: T sign(s'), smooth T tanh(s'/v)."""
+    motion, size = system.motion, len(system.symbols.u)
+    value = motion.scope.value
+    for link in motion.links:
+        for k, field, law in () if link.joint is None else link.joint.frictions:
+            if law.size is not None:
+                row, sense = motion.joint_row(link.name, k), -ContactMode().joint_factor(law, value, link.s_rate[k])
+                label = f"friction({link.joint.named_contact(link.name, field)})"
+                yield label, value(law.size), tuple(row.get(i, 0) * sense for i in range(size))
 
 
 def _rest(system: System) -> ScalarRow:

@@ -9,7 +9,7 @@ every equation of motion by one and the same operator:
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import field
+from dataclasses import field, replace
 from functools import cached_property
 
 from eomgen.frozen import dataclass
@@ -178,9 +178,11 @@ class Contributions:
             name = f"joint of {effort.body}"
             if not is_zero(effort.potential):
                 found.append(Contribution(f"the spring {where}", effort.body, name, V=effort.potential, kind="force"))
-            if not is_zero(effort.drive):
-                Q = loads.drive_row(effort)
-                found.append(Contribution(f"the drive or damper {where}", effort.body, name, Q=Q, kind="force"))
+            drive = effort.drive if is_zero(effort.friction) else effort.drive - effort.friction
+            for what, size in (("drive or damper", drive), ("friction", effort.friction)):
+                if not is_zero(size):
+                    Q = loads.drive_row(replace(effort, drive=size))
+                    found.append(Contribution(f"the {what} {where}", effort.body, name, Q=Q, kind="force"))
         return found
 
     def _force(self, force: Applied) -> list[Contribution]:

@@ -32,7 +32,7 @@ from eomgen.symbolic.expression import Matrix, Scalar, Vector, is_zero, substitu
 class ForceKind:
     """Kinds of what acts on a body that is cut free."""
 
-    WEIGHT, SPRING, DAMPER, DRIVE = "weight", "spring", "damper", "drive"
+    WEIGHT, SPRING, DAMPER, DRIVE, FRICTION = "weight", "spring", "damper", "drive", "friction"
     APPLIED, REACTION, INERTIA = "applied", "reaction", "inertia"
 
 
@@ -173,12 +173,13 @@ def _efforts(balance: Balance) -> Iterator[CutForce]:
 
 
 def _shares_of(system: System, link: BodyLink, effort: JointEffort) -> Iterator[tuple[str, Scalar]]:
-    """(kind, size) of what acts along one variable of a joint: a drive, a spring, a damper."""
+    """(kind, size) of what acts along one variable of a joint: a drive, a spring, a damper, dry friction."""
     declared = link.joint.efforts()[effort.variable] if link.joint is not None else None
     drive = 0 if declared is None or declared.drive is None else system.scope.value(declared.drive)
     yield ForceKind.DRIVE, drive
     yield ForceKind.SPRING, effort.effort - effort.drive
-    yield ForceKind.DAMPER, effort.drive - drive
+    yield ForceKind.DAMPER, effort.drive - drive - effort.friction
+    yield ForceKind.FRICTION, effort.friction
 
 
 # -- reactions -------------------------------------------------------------------------------------
