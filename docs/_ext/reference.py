@@ -47,6 +47,7 @@ from eomgen.model.joints.path import PathPiece  # noqa: E402
 from eomgen.model.kinds import (  # noqa: E402
     HingeFriction,
     LimitsRule,
+    PushFriction,
     ReactionSymbolsRule,
     Resistance,
     SlideFriction,
@@ -100,7 +101,8 @@ TABLES: Mapping[str, type[Any]] = {
     "friction": Resistance,
     "friction of a hinge": HingeFriction,
     "friction of a slide": SlideFriction,
-    "friction of a screw": TurnFriction,
+    "friction of a turn": TurnFriction,
+    "friction of a push": PushFriction,
     "track": Track,
     "circle": Circle,
     "wrap": Wrap,

@@ -160,8 +160,9 @@ shape = { kind = "disc", mass = "m", radius = "r" }
 joint = { kind = "fixed", on = "two", at = ["r", 0], angle = 0.3 }
 [bodies.four]
 shape = { kind = "disc", mass = "m", radius = "r" }
-joint = { kind = "planar", on = "two", x = "x", y = "y", angle = "d", limits = { x = [-1, "r"] }, restitution = 0.1 }
-""".replace("ALL", "STOPS, EFFORTS" + SLIDES)
+joint = { kind = "planar", on = "two", x = "x", y = "y", angle = "d", WITH }
+""".replace("WITH", 'limits = { x = [-1, "r"] }, restitution = 0.1, friction = { angle = { torque = 0.2 } }')
+    .replace("ALL", "STOPS, EFFORTS" + SLIDES)
     .replace(" RUBS", RUBS)
     .replace("EFFORTS", EFFORTS)
     .replace("STOPS", STOPS),
@@ -268,7 +269,8 @@ SPACE = {
     ),
     "cylindrical": jointed(
         f'kind = "cylindrical", {SEAT}, axis = [1, -2, "l"], displacement = "a", angle = "b", '
-        'force = "-c*a\'", torque = "t", limits = { displacement = [-1, 2], angle = ["-inf", 3] }, restitution = "mu"',
+        'force = "-c*a\'", torque = "t", limits = { displacement = [-1, 2], angle = ["-inf", 3] }, restitution = "mu", '
+        "friction = { displacement = { force = 0.6 }, angle = { torque = 0.3, smooth = 0.1 } }",
         "a",
         "b",
     ),

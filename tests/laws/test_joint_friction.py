@@ -324,3 +324,68 @@ def test_statics_names_a_joint_that_cannot_hold():
     found = eomgen.statics(eomgen.loads(HINGE))
     assert found.broken == ("the joint 'rod' slides: it would need more friction than it can have",)
     assert ranges(HINGE)[0]["high"] is None
+
+
+def test_each_variable_of_a_sleeve_sticks_by_itself():
+    """A spinning sleeve slows by T/J and slides by F/m, each on its own."""
+    text = """
+eomgen = 1
+space = "space"
+parameters = { m = 2, J = 0.03 }
+coordinates = { d = { speed = 1 }, a = { speed = -3 } }
+outputs = { F = "friction(sleeve_displacement)", T = "friction(sleeve_angle)" }
+[bodies.sleeve]
+mass = "m"
+inertia = ["J", 0.02, 0.02]
+[bodies.sleeve.joint]
+kind = "cylindrical"
+axis = [1, 0, 0]
+displacement = "d"
+angle = "a"
+friction = { displacement = { force = 3 }, angle = { torque = 0.05 } }
+"""
+    result = run(text, 3)
+    assert [phase.end for phase in result.phases[:2]] == pytest.approx([2 / 3, 9 / 5])
+    assert (result["d"][-1], result["a"][-1]) == pytest.approx((1 / 3, -2.7))
+    assert (result["F"][0], result["T"][0]) == pytest.approx((-3, 0.05))
+    assert result.certify().ok
+
+
+def test_friction_of_a_driven_joint_is_a_part_of_its_drive():
+    """q = t: the drive is m g (l/2) sin q + T_c."""
+    text = HINGE.replace("{ start = 1 }", '{ motion = "t" }').replace(
+        'holds = "friction(rod)"', 'holds = "friction(rod)", D = "drive(q)"'
+    )
+    result = run(text, 1)
+    assert result["holds"] == pytest.approx(np.full(len(result.t), -1.0))
+    assert result["D"] == pytest.approx(G / 2 * np.sin(result.t) + 1)
+
+
+def test_friction_in_a_loop_holds_where_virtual_work_says():
+    """A parallelogram of two cranks l with a bar M: it rests while (m + M) g l |sin a| <= T, the coupler follows."""
+    text = """
+eomgen = 1
+space = "plane"
+parameters = { m = 1, M = 2, l = 0.5, d = 1, g = 9.81, T = 3 }
+forces.weight = { kind = "gravity", acceleration = [0, "-g"] }
+coordinates = { a = { start = 0.1 }, b = { dependent = true, near = 0.1 }, c = { dependent = true, near = 0 } }
+outputs = { holds = "friction(left)" }
+points = { P = ["d", 0] }
+constraints.pin = { kind = "pin", points = ["bar.end", "right.end"] }
+[bodies.left]
+shape = { kind = "rod", mass = "m", length = "l" }
+joint = { kind = "revolute", angle = "a - pi/2", point = "start", friction = { torque = "T" } }
+[bodies.bar]
+shape = { kind = "rod", mass = "M", length = "d" }
+joint = { kind = "revolute", on = "left.end", angle = "c - a + pi/2", point = "start" }
+[bodies.right]
+shape = { kind = "rod", mass = "m", length = "l" }
+joint = { kind = "revolute", at = "P", angle = "b - pi/2", point = "start" }
+"""
+    result = run(text, 0.5)
+    assert senses(result, "left") == [0]
+    assert result["holds"][-1] == pytest.approx(3 * G * 0.5 * math.sin(0.1), rel=1e-9)
+    moved = run(text.replace("start = 0.1", "start = 0.4"), 3)
+    rests = moved["a"][-1]
+    assert senses(moved, "left")[-1] == 0 and 3 * G * 0.5 * abs(math.sin(rests)) <= 3
+    assert moved.certify().ok
