@@ -187,7 +187,7 @@ class ImpactEquations:
             moved[lam] = by_row.get((row.constraint, row.number), 0)
         struck, resting = (substituted((reaction,), known)[0] for known in (moved, still))
         own = self.system.symbols
-        here: dict[str, Scalar] = {x.name: x for x in (*own.x, own.t)} | dict(own.parameters)
+        here: dict[str, Scalar] = {x.name: x for x in (*own.x, own.t, *own.parameters.values())}
         return transplanted((book_form(struck - resting, Work.ANSWER),), self.system.scope.graph, here)[0]
 
     @property
