@@ -228,7 +228,9 @@ class _Proof:
         """{state: (z' at rest by the file's own text, how fast it changes with the place)}."""
         system = self.first.system
         numbers: dict[Node, Any] = {**self.numbers, **dict.fromkeys(system.symbols.a, 0)}
-        moved = {x: numbers[x] + STEP * max(1, abs(numbers[x])) for x in system.symbols.places}
+        rng = Random(7)  # each moves by a share of its own: all by the same, q - z would not change
+        shares = {x: STEP * rng.choice((-1, 1)) * rng.randrange(50, 100) / 100 for x in system.symbols.places}
+        moved = {x: numbers[x] + fifty_digits().number(by) * max(1, abs(numbers[x])) for x, by in shares.items()}
         here, there = (declared_state_rates(system, state) for state in (numbers, numbers | moved))
         return {name: (x, abs(there[name] - x) / STEP) for name, x in here.items()}
 

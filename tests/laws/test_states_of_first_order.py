@@ -290,3 +290,27 @@ def test_sensitivities_follow_states_through_a_run_and_at_rest():
     rest = eomgen.sensitivity(eomgen.loads(SERVO), of="equilibrium", to="r")
     i = -0.5 * 9.81 * 0.2 * np.sin(0.5) / 0.8
     assert rest.matrix[:, 0] == pytest.approx([1, i, 1.2 * i / 30])
+
+
+FOLLOWER = """
+eomgen = 1
+space = "plane"
+[parameters]
+k = 3
+w = 1.7
+[coordinates]
+x = 0
+[states]
+z = { rate = "w*(x - z)", about = "the place, late" }
+[bodies.cart]
+mass = 1
+joint = { kind = "prismatic", axis = [1, 0], displacement = "x", force = "1.1 - k*x" }
+"""
+
+
+def test_what_follows_a_place_rests_there():
+    """z' = w (x - z) vanishes where z = x; moved along with x it would not change, which is no measure of it."""
+    found = eomgen.statics(eomgen.loads(FOLLOWER))
+    (place,) = found.entries()["equilibria"]
+    assert place["states"]["z"].value == place["coordinates"]["x"].value == pytest.approx(1.1 / 3)
+    assert found.certify().ok
