@@ -188,6 +188,17 @@ def test_of_two_balls_that_fall_together_the_upper_one_rises_higher_than_it_fell
     assert v2 == pytest.approx(1.43 * math.sqrt(2 * G), rel=1e-5)
 
 
+def test_two_balls_that_touch_share_the_impact_or_take_it_one_after_the_other():
+    """At once both leave with e v; ground first v2 = 1.43 v and v1 = 0.008 v."""
+    text = TWO_BALLS.replace("d = 1e-6", "d = 0").replace('radius = "1e-9"', "radius = 0.001")
+    text = text.replace('start = "h + d"', 'start = "h + d + 0.001"')
+    for rules, due in (("", (0.8, 0.8)), ('[impact]\norder = "sequential"\n', (0.008, 1.43))):
+        result = run(text + rules, 0.455)
+        later = result.t[-1] - result.impacts[0].t
+        after = [(result[f"{name}'"][-1] + G * later) / math.sqrt(2 * G) for name in ("y1", "y2")]
+        assert after == pytest.approx(due, abs=1e-9) and result.certify().ok
+
+
 BLOCK = """
 parameters = { m = 2, g = 9.81, b = "sin(alpha)", h = "cos(alpha)", alpha = 0.35, w0 = -0.4 }
 coordinates = { x = { start = "b" }, y = { start = "h" }, phi = { speed = "w0" } }
