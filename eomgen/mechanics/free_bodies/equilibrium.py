@@ -160,7 +160,8 @@ def _is_inner(system: System, component: Component) -> bool:
         return False
     if component.kind != "constraint":
         return True
-    if system.scope.model.constraints[component.owner].leans_on_ground():
+    constraint = system.scope.model.constraints.get(component.owner)  # none of a joint that sticks
+    if constraint is not None and constraint.leans_on_ground():
         return False
     rows = [
         row for row in system.constraints.rows if (row.constraint, row.number) == (component.owner, component.number)

@@ -269,7 +269,9 @@ class _Search:
         rows = [row for row in self.mechanism.system.constraints.rows if row.constraint == component.owner]
         if any(row.number == component.number and not holds_identically(row.direct) for row in rows):
             return True
-        constraint = motion.scope.model.constraints[component.owner]
+        constraint = motion.scope.model.constraints.get(component.owner)
+        if constraint is None:  # a joint that sticks
+            return False
         points = (leaf.value for leaf in constraint.leaves(()) if getattr(leaf.rule, "of", "") == "point")
         return any(motion.moves(motion.place(point)[1]) for point in points)
 
