@@ -71,12 +71,12 @@ def step(derivation: Document, key: str) -> Step:
     return next(step for step in derivation.steps if step.key == key)
 
 
-def printed_formulas(text: str) -> list[tuple[str, str]]:
-    """(left, right) of each formula of a rendered text that has two sides, continued lines and cases joined."""
+def printed_formulas(text: str, sides: int = 2) -> list[tuple[str, str]]:
+    """(left, last) of each formula of a rendered text that has so many sides, continued lines and cases joined."""
     text = re.sub(r"\n {16}", " ", text)
     text = re.sub(r"(?<= =)((?:\n {8}\S.*)+)", lambda cases: " " + "; ".join(cases[0].split("\n        ")[1:]), text)
     lines = [line.strip() for line in re.sub(r"\n {8}", " ", text).splitlines() if line.startswith("    ")]
-    return [(line.split(" = ")[0], line.split(" = ")[1]) for line in lines if line.count(" = ") == 1]
+    return [(line.split(" = ")[0], line.split(" = ")[-1]) for line in lines if line.count(" = ") == sides - 1]
 
 
 def printed_equations(text: str) -> list[tuple[str, str]]:
@@ -89,7 +89,9 @@ def printed_definitions(text: str, derived: Equations, derivation: Document) -> 
     """What the printed names of sub-expressions stand for; each is printed once, before its use."""
     names = {symbol.name for symbol, _ in derivation.definitions}
     found: dict[str, Scalar] = {}
-    for left, right in printed_formulas(text):
+    single = {left for left, _ in printed_formulas(text)}
+    sized = [pair for pair in printed_formulas(text, 3) if pair[0] not in single]  # F = -mu sign(s') |N| = ...
+    for left, right in [*printed_formulas(text), *sized]:
         if left in names:
             assert left not in found
             found[left] = read_back(right, derived, found)
