@@ -71,12 +71,12 @@ def step(derivation: Document, key: str) -> Step:
     return next(step for step in derivation.steps if step.key == key)
 
 
-def printed_formulas(text: str, sides: int = 2) -> list[tuple[str, str]]:
+def printed_formulas(text: str, sides: Sequence[int] = (2,)) -> list[tuple[str, str]]:
     """(left, last) of each formula of a rendered text that has so many sides, continued lines and cases joined."""
     text = re.sub(r"\n {16}", " ", text)
     text = re.sub(r"(?<= =)((?:\n {8}\S.*)+)", lambda cases: " " + "; ".join(cases[0].split("\n        ")[1:]), text)
     lines = [line.strip() for line in re.sub(r"\n {8}", " ", text).splitlines() if line.startswith("    ")]
-    return [(line.split(" = ")[0], line.split(" = ")[-1]) for line in lines if line.count(" = ") == sides - 1]
+    return [(line.split(" = ")[0], line.split(" = ")[-1]) for line in lines if line.count(" = ") + 1 in sides]
 
 
 def printed_equations(text: str) -> list[tuple[str, str]]:
@@ -89,9 +89,13 @@ def printed_definitions(text: str, derived: Equations, derivation: Document) -> 
     """What the printed names of sub-expressions stand for; each is printed once, before its use."""
     names = {symbol.name for symbol, _ in derivation.definitions}
     found: dict[str, Scalar] = {}
-    single = {left for left, _ in printed_formulas(text)}
-    sized = [pair for pair in printed_formulas(text, 3) if pair[0] not in single]  # F = -mu sign(s') |N| = ...
-    for left, right in [*printed_formulas(text), *sized]:
+    friction = re.split(r"\n\n\d+\. ", text.partition("Friction\n---")[2])[0]
+    sized = dict(printed_formulas(friction, (3,)))  # F = -mu sign(s') |N| = ...
+    for left, right in printed_formulas(text, (2, 3)):
+        if (left in sized and right != sized[left]) or (
+            left not in sized and (left, right) not in printed_formulas(text)
+        ):
+            continue
         if left in names:
             assert left not in found
             found[left] = read_back(right, derived, found)

@@ -586,11 +586,12 @@ def _definitions(
 
 
 def _defined(steps: Sequence[Step], symbols: Container[Scalar]) -> Iterator[tuple[Node, Scalar]]:
-    """symbol = value of every symbol, in the order of the steps."""
+    """symbol = value of every symbol, in the order of the steps; of friction the last of F = -mu sign(s') |N| = value."""
     for step in steps:
         for statement in step.statements:
-            if isinstance(statement, Formula) and len(found := _scalars_of(statement)) == 2:
-                symbol, value = found
+            sizes = (2, 3) if step.key == "friction" else (2,)
+            if isinstance(statement, Formula) and len(found := _scalars_of(statement)) in sizes:
+                symbol, value = found[0], found[-1]
                 if type(symbol) is Node and symbol in symbols:
                     yield symbol, value
 
