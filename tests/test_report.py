@@ -90,6 +90,7 @@ def printed_definitions(text: str, derived: Equations, derivation: Document) -> 
     names = {symbol.name for symbol, _ in derivation.definitions}
     found: dict[str, Scalar] = {}
     friction = re.split(r"\n\n\d+\. ", text.partition("Friction\n---")[2])[0]
+    single = printed_formulas(text)
     sized = dict(printed_formulas(friction, (3,)))  # F = -mu sign(s') |N| = ...
     for left, right in printed_formulas(text, (2, 3)):
         if (left in sized and right != sized[left]) or (

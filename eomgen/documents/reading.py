@@ -586,7 +586,7 @@ def _definitions(
 
 
 def _defined(steps: Sequence[Step], symbols: Container[Scalar]) -> Iterator[tuple[Node, Scalar]]:
-    """symbol = value of every symbol, in the order of the steps; of friction the last of F = -mu sign(s') |N| = value."""
+    """symbol = value of every symbol, in the order of the steps; of friction also F = -mu sign(s') |N| = value."""
     for step in steps:
         for statement in step.statements:
             sizes = (2, 3) if step.key == "friction" else (2,)
