@@ -93,9 +93,7 @@ def printed_definitions(text: str, derived: Equations, derivation: Document) -> 
     single = printed_formulas(text)
     sized = dict(printed_formulas(friction, (3,)))  # F = -mu sign(s') |N| = ...
     for left, right in printed_formulas(text, (2, 3)):
-        if (left in sized and right != sized[left]) or (
-            left not in sized and (left, right) not in printed_formulas(text)
-        ):
+        if right != sized.get(left, right) or (left not in sized and (left, right) not in single):
             continue
         if left in names:
             assert left not in found
