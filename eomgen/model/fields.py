@@ -324,7 +324,9 @@ class NameRule(WholeRule):
         return None
 
     def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
-        return {"type": "string", "description": f"the name of {article(self.of)}"}
+        one = {"type": "string", "description": f"the name of {article(self.of)}"}
+        first = {"type": "array", "items": {"type": "string"}, "minItems": 2, "description": "the first that there is"}
+        return {"anyOf": [one, first]}
 
 
 @dataclass(frozen=True)
