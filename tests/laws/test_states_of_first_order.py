@@ -314,3 +314,10 @@ def test_what_follows_a_place_rests_there():
     (place,) = found.entries()["equilibria"]
     assert place["states"]["z"].value == place["coordinates"]["x"].value == pytest.approx(1.1 / 3)
     assert found.certify().ok
+
+
+def test_a_state_that_follows_what_nothing_holds_rests_anywhere():
+    """Without a force on x every place is one of rest, with z = x there: the place that is found says so."""
+    (place,) = eomgen.statics(eomgen.loads(FOLLOWER.replace("1.1 - k*x", "0*k*x"))).entries()["equilibria"]
+    assert place["states"]["z"].value == pytest.approx(place["coordinates"]["x"].value)
+    assert "places beside it are at rest, too" in place["stability"]["why"]

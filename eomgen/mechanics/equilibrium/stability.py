@@ -70,13 +70,26 @@ def stability_of(
             neighbouring equilibria are at d with K d = 0.
     """
     if statics.system.symbols.z:
-        return Stability("undecided", "states of first order move with it; `linearize` decides on the stability")
+        why = "states of first order move with it; `linearize` decides on the stability"
+        return Stability(
+            "undecided", f"places beside it are at rest, too; {why}" if _has_neighbours(statics, numbers) else why
+        )
     if not statics.q:
         return Stability(INDIFFERENT, "nothing can move" if not statics.system.symbols.u else "no force holds it")
     try:
         return _Place(statics, exact, numbers, values, chosen).stability()
     except (NoValue, ZeroDivisionError):  # as of x^(1/3) at 0
         return Stability("undecided", "the forces have no derivatives there")
+
+
+def _has_neighbours(statics: StaticEquations, numbers: Mapping[Node, Any]) -> bool:
+    """True if to first order all that vanishes at a place stays 0 along some direction of coordinates and states."""
+    rows, many = jacobian(statics.equations, statics.unknowns), len(statics.q)
+    try:
+        slopes = statics.slopes(rows, np.array([float(numbers[q]) for q in statics.q]), numbers)
+    except (KeyError, NoValue, ZeroDivisionError):  # a parameter has no value
+        return False
+    return rank(slopes) - rank(slopes[:, many:]) < many
 
 
 @dataclass(frozen=True)
