@@ -315,3 +315,21 @@ def test_a_report_of_parts_holds(tmp_path):
     path, page = read(tmp_path, two, leg=LEG), tmp_path / "page.html"
     found = CliRunner().invoke(main, ["report", str(path), "-o", str(page), "--time", "0.3"])
     assert found.exit_code == 0, found.output
+
+
+def test_a_vector_whose_components_are_texts_is_no_list_of_references():
+    """at = ["{i}*a", "b"] is a place, beside on = ["rod{i-1}.end", "O"]; so is a force that calls a table."""
+    text = CHAIN.replace("[coordinates]", "b = 0.5\n\n[tables]\nT = { at = [0, 1], values = [2, 4] }\n\n[coordinates]")
+    text += """
+[bodies."post{i}"]
+joint = { kind = "placed", at = ["{i}*l", "b"] }
+
+[forces."push{i}"]
+kind = "force"
+point = "rod{i}.end"
+force = ["T(0.5*{i})", "b"]
+"""
+    found = eomgen.loads(text)
+    assert [[x.text for x in found.bodies[f"post{i}"].joint.at] for i in (1, 2)] == [["1*l", "b"], ["2*l", "b"]]
+    push = found.forces["push2"].force
+    assert push[0].evaluate({"pi": math.pi}) == 4 and push[1].text == "b"

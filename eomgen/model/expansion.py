@@ -429,15 +429,18 @@ class _Walk:
 # -------- first of several ------------------------------------------------------------------------------------
 
 
-def _declared(tables: Mapping[str, Any]) -> set[str]:
-    return {"ground", *(str(name) for key in TABLES for name in table_of(tables, key))}
+def _declared(tables: Mapping[str, Any]) -> dict[str, set[str]]:
+    """The names that are declared: those of points and of what has points, and all others."""
+    found = {key: {str(name) for name in table_of(tables, key)} for key in TABLES}
+    return {"points": found["points"] | found["bodies"] | found["trusses"], "others": {"ground"}.union(*found.values())}
 
 
-def _settled(value: Any, names: set[str]) -> Any:
+def _settled(value: Any, names: Mapping[str, set[str]]) -> Any:
     """The tables in which each list of references knows which is the first that is declared."""
     if isinstance(value, Alternatives):
-        chosen = next((x for x in value if x.partition(".")[0].rstrip("'") in names), value[-1])
-        return Alternatives(value, chosen)
+        known = set().union(*names.values())
+        chosen = next((x for x in value if x.partition(".")[0].rstrip("'") in known), value[-1])
+        return Alternatives(value, chosen, is_place=chosen.partition(".")[0] in names["points"])
     if isinstance(value, Mapping):
         return {key: _settled(x, names) for key, x in value.items()}
     return [_settled(x, names) for x in value] if isinstance(value, list) else value

@@ -43,11 +43,16 @@ class Leaf:
 
 
 class Alternatives(list[Any]):
-    """References of which the first that is declared is meant where one is expected; elsewhere they are a list."""
+    """References of which the first that is declared is meant where one is expected; elsewhere they are a list.
 
-    def __init__(self, items: Iterable[Any], chosen: Any = None) -> None:
+    Args:
+        chosen: it.
+        is_place: it is a point, and no component of a vector.
+    """
+
+    def __init__(self, items: Iterable[Any], chosen: Any = None, *, is_place: bool = False) -> None:
         super().__init__(items)
-        self.chosen = chosen
+        self.chosen, self.is_place = chosen, is_place
 
 
 def _as_one(raw: Any) -> Any:
@@ -251,7 +256,7 @@ class VectorRule:
     downward: bool = False
 
     def read(self, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> Any:
-        raw = _as_one(raw) if self.point or self.own_point else raw
+        raw = _as_one(raw) if (self.point or self.own_point) and getattr(raw, "is_place", True) else raw
         if (self.point or self.own_point) and isinstance(raw, str) and not isinstance(raw, Decimal):
             return str(raw)
         if not isinstance(raw, (list, tuple)):

@@ -122,10 +122,10 @@ def with_functions(raw: Any, functions: Mapping[str, TableFunction], found: list
         if isinstance(value, Mapping):
             kept = (TABLES, *_NOT_TEXT) if not path else _NOT_TEXT
             return {key: x if key in kept else read(x, (*path, key)) for key, x in value.items()}
-        if isinstance(value, Alternatives):  # references, in which no function is called
+        if isinstance(value, Alternatives) and not any(map(calls.search, value)):  # references call nothing
             return value
         if isinstance(value, (list, tuple)):
-            return type(value)(read(x, (*path, k)) for k, x in enumerate(value))
+            return (list if isinstance(value, list) else tuple)(read(x, (*path, k)) for k, x in enumerate(value))
         if not isinstance(value, str) or isinstance(value, Decimal) or not calls.search(value):
             return value
         if "=" in value:
