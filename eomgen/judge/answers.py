@@ -288,7 +288,7 @@ def _of_the_start(case: Case, course: Course) -> str:
 
 
 def of_state(case: Case, written: HandEquation, kind: str) -> Verdict | None:
-    """The verdict on a wrong equation for z'; None where it is right, or about more than one such rate."""
+    """The verdict on an equation for z'; None where it is right for other reasons, or about more than one such rate."""
     scope = case.system.scope
     asked = [z for z in scope.symbols.z if f"{z.name}'" in written.names]
     if len(asked) != 1 or case.unknown_names(written) or truth_of(case, case.value(written.difference), kind).holds:
@@ -301,13 +301,13 @@ def of_state(case: Case, written: HandEquation, kind: str) -> Verdict | None:
     if is_zero(slope) or depends_on(slope, (rate,)) or accelerated:
         return None
     apart = over(-rest, slope) - declared
-    if is_zero_everywhere(case.system, apart).holds is not False:
-        return None
+    if (found := is_zero_everywhere(case.system, apart)).holds is not False:
+        return Verdict(written.given, kind, RIGHT) if found.holds else None
     difference = short_text(-apart, scope.positive)
     cause = next((x for x in _causes_of_state(case, z, declared, apart)), None)
     text = f"{z.name}' is another one: {short_text(declared, scope.positive)}"
-    found = cause or Cause("other", text, quantity=f"the rate of {z.name}")
-    return Verdict(written.given, kind, WRONG, difference=difference, causes=(found,))
+    cause = cause or Cause("other", text, quantity=f"the rate of {z.name}")
+    return Verdict(written.given, kind, WRONG, difference=difference, causes=(cause,))
 
 
 def _causes_of_state(case: Case, z: Node, declared: Scalar, apart: Scalar) -> Iterator[Cause]:

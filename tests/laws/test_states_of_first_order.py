@@ -230,6 +230,33 @@ def test_an_equation_for_the_rate_of_a_state_is_judged_by_its_terms(equation, ki
     assert [(x.kind, x.term) for x in verdict.causes] == ([(kind, term)] if kind else [])
 
 
+SENSOR = """
+eomgen = 1
+space = "plane"
+parameters = { k = 30, w = 4 }
+coordinates = { x = 0.1 }
+states.y = { rate = "x'' - w*y" }
+[bodies.b]
+mass = 2
+joint = { kind = "prismatic", axis = [1, 0], displacement = "x", stiffness = "k" }
+"""
+
+
+@pytest.mark.parametrize(
+    ("equation", "right"),
+    [
+        ("y' = x'' - w*y", True),
+        ("y' + w*y = x''", True),
+        ("y' = -k*x/2 - w*y", True),
+        ("y' = x'' + w*y", False),
+        ("y' = k*x/2 - w*y", False),
+    ],
+)
+def test_a_rate_that_follows_an_acceleration_is_judged_with_it_and_without(equation, right):
+    """As it is declared it says what the file says, which is right; with 2 x'' = -k x put in, too."""
+    assert bool(eomgen.verify(eomgen.loads(SENSOR), equation)) == right
+
+
 BLOCKED = """
 eomgen = 1
 space = "plane"
