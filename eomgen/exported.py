@@ -189,17 +189,23 @@ class _Writing:
         return ("continuous" if any(turning) else "prismatic"), [factor * x for x in axis]
 
     def _effort(self, link: BodyLink) -> str:
-        """Its damper; springs and rotors are left out."""
+        """Its damper and its dry friction of constant size; springs, rotors and other friction are left out."""
         (effort,) = (link.joint.efforts() or (None,))[:1]
         if effort is None:
             return ""
         for key in ("stiffness", "armature"):
             if getattr(effort, key) is not None:
                 self.left.setdefault(key, []).append(link.name)
-        if effort.damping is None:
-            return ""
-        (damping,) = self.numbers((self.system.scope.value(effort.damping),), f"bodies.{link.name}.joint")
-        return f'<dynamics damping="{damping!r}"/>'
+        found = {} if effort.damping is None else {"damping": effort.damping}
+        for _, _, law in link.joint.frictions[:1]:
+            if law.size is None or law.smooth is not None or law.static is not None:
+                self.left.setdefault("friction", []).append(link.name)
+            else:
+                found["friction"] = law.size
+        value = self.system.scope.value
+        numbers = self.numbers(tuple(map(value, found.values())), f"bodies.{link.name}.joint")
+        said = " ".join(f'{key}="{x!r}"' for key, x in zip(found, numbers, strict=True))
+        return f"<dynamics {said}/>" if found else ""
 
     def _followed(self) -> dict[str, tuple[str, str]]:
         """{coordinate that a constraint couples to another one: (the constraint, its <mimic> element)}.

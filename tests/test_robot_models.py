@@ -402,7 +402,7 @@ def test_what_changes_the_motion_is_left_out_with_its_nearest_counterpart(tmp_pa
     """`nearest` of friction and contacts is a way that a model has; of a picture it is null."""
     text = (
         urdf()
-        .replace("</joint>", '<dynamics friction="2"/></joint>', 1)
+        .replace("</joint>", '<dynamics friction="-2"/></joint>', 1)
         .replace("<inertial>", "<visual/><collision/><inertial>")
     )
     entries = {each.what: each.as_dict() for each in robot(tmp_path, text, "urdf").left_out}

@@ -521,8 +521,10 @@ def _declared(proof: InNumbers, law: Resistance | None, speed: Any, slides: bool
     smooth = getattr(law, "smooth", None)
     if smooth is not None:
         slides = fifty_digits().functions["tanh"](speed / proof.one(proof.system.scope.value(smooth)))
+    own = [getattr(law, name, None) for name in ("coefficient", "radius")]  # of a joint: mu, and of a hinge r
     if law.coulomb is not None:
-        return abs(proof.one(proof.system.scope.value(law.coulomb))) * slides
+        sizes = [proof.one(proof.system.scope.value(x)) for x in (own if own[0] is not None else [law.coulomb]) if x]
+        return abs(math.prod(sizes)) * slides
     return abs(proof.one(proof.system.scope.value(law.viscous))) * speed
 
 

@@ -201,6 +201,8 @@ class _Imported:
                     if abs(found - due) <= tolerances.COMPUTED * (1 + abs(due))
                     else f"{ours} of '{q}' is {found:.9g}"
                 )
+            due, found = max(0.0, _float(dynamics, "friction", 0.0)), self.posed.number(dry_friction_of(own[q]))
+            yield "" if abs(found - due) <= tolerances.COMPUTED * (1 + due) else f"friction of '{q}' is {found:.9g}"
             rest = _float(dynamics, "spring_reference", 0.0)
             if _float(dynamics, "spring_stiffness", 0.0):
                 found = self.posed.number(getattr(own[q], "rest", None))
@@ -374,6 +376,7 @@ def unsaid_otherwise(text: str, model: Model, left_out: Mapping[str, Collection[
         "forces": [name for name in acts if name not in fields or not usual],
         "stiffness": [name for name, each in pushes.items() if any(x.stiffness is not None for x in each)],
         "armature": [name for name, each in pushes.items() if any(x.armature is not None for x in each)],
+        "friction": [name for name, each in pushes.items() if any(_is_beyond(x.friction) for x in each)],
         "values of inputs": [name for name, part in model.inputs.items() if _given(posed, part.value)],
         "start values": [x for x, part in q.items() if _given(posed, part.start) or _given(posed, part.speed)],
         "given motions": [x for x, part in q.items() if part.driven],
@@ -404,6 +407,16 @@ def without_units(model: Model) -> str:
     parts: dict[str, Any] = {**model.parameters, **model.coordinates}
     bare = [name for name in parts if name in used and (parts[name] is None or parts[name].unit is None)]
     return f"'{bare[0]}' has no unit" if bare else ""
+
+
+def _is_beyond(law: Any) -> bool:
+    """True if URDF cannot say a friction of a joint: one number."""
+    return law is not None and (law.size is None or law.smooth is not None or law.static is not None)
+
+
+def dry_friction_of(joint: Any) -> Any:
+    """The size of the dry friction of a joint of one variable; None without."""
+    return next((law.size for _, _, law in joint.frictions), None)
 
 
 def _given(posed: PosedModel, value: Any) -> bool:
@@ -464,17 +477,16 @@ class _ImportedUrdf:
         return poses_differ(self.posed.between(above, child), due)
 
     def yields(self, joint: Element) -> str:
-        """The damping of a hinge or slide."""
+        """The damping and the dry friction of a hinge or slide."""
         child, dynamics = self.body(_named(joint, "child")), joint.find("dynamics")
         if child is None or self.coordinate(joint) is None:
             return ""
-        due = 0.0 if dynamics is None else float(dynamics.get("damping", 0))
-        found = self.posed.number(getattr(self.model.bodies[child].joint, "damping", None))
-        return (
-            ""
-            if abs(found - due) <= tolerances.COMPUTED * (1 + abs(due))
-            else f"the joint of '{child}' has another damping"
-        )
+        own = self.model.bodies[child].joint
+        for name, found in (("damping", getattr(own, "damping", None)), ("friction", dry_friction_of(own))):
+            due, here = 0.0 if dynamics is None else float(dynamics.get(name, 0)), self.posed.number(found)
+            if abs(here - max(due, 0.0 if name == "friction" else due)) > tolerances.COMPUTED * (1 + abs(due)):
+                return f"the joint of '{child}' has another {name}"
+        return ""
 
     def bounded(self, joint: Element) -> str:
         """Limits of a hinge or slide, as the remark of its coordinate says."""

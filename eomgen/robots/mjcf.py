@@ -210,7 +210,7 @@ def _efforts(r: CompiledRobot, j: int, reference: Decimal) -> Entries:
         low, high = m.jnt_actfrcrange[j]
         r.leave("limits of motors", [f"all at {q} ({low:g} to {high:g})"], "an input has none")
     if m.dof_frictionloss[d]:
-        r.leave("frictionloss", [q], 'of Coulomb in a joint; sliding it is "... - f*sign(rate)", and cannot stick')
+        r.leave("frictionloss", [q], "a loss that yields a little where it sticks")
     return keys
 
 

@@ -327,7 +327,7 @@ class _Reading:
             effort = self.names.new(f"{'F' if unit == 'm' else 'tau'}_{q}")
             self.found["inputs"][effort] = {"value": 0, "unit": "N" if unit == "m" else "N*m"}
             keys["force" if unit == "m" else "torque"] = effort
-        keys |= self._dynamics(element.one("dynamics"))
+        keys |= self._dynamics(element.one("dynamics"), "force" if unit == "m" else "torque")
         if kind in ONE_AXIS and (rotor := self._rotor(joint, element)):
             keys["armature"] = rotor
         return Moved(keys, at.p, q)
@@ -374,8 +374,8 @@ class _Reading:
                 said.append(f"at most {most} {of}")
         return said
 
-    def _dynamics(self, dynamics: XmlElement | None) -> Entries:
-        """Dampers and springs; friction is left out."""
+    def _dynamics(self, dynamics: XmlElement | None, effort: str) -> Entries:
+        """Dampers, springs and dry friction."""
         keys: Entries = {}
         if dynamics is None:
             return keys
@@ -386,8 +386,9 @@ class _Reading:
         if "stiffness" not in keys:
             keys.pop("rest", None)
         friction = next((child for child in dynamics.children if child.tag == "friction"), None)
-        if friction is not None and not friction.value()[0]:
+        if friction is not None and (size := friction.value()[0]) >= 0:
             friction.seen = True
+            keys |= {"friction": {effort: size}} if size else {}
         return keys
 
     def _mimic(self, q: str, mimic: XmlElement) -> bool:

@@ -203,7 +203,7 @@ NEAREST = {  # nearest counterpart in a model of a thing that changes the motion
     "geoms that touch": "`rolling` or `support` in [constraints]; a push by max(0, depth) in [forces]",
     "pairs of geoms that touch": "`rolling` or `support` in [constraints]; a push by max(0, depth) in [forces]",
     "friction": SLIDING,
-    "frictionloss": SLIDING,
+    "frictionloss": "`friction = { torque = f }` of the joint, which sticks and slips",
     "motion of a mocap body": "a `motion` of coordinates of a joint",
     "springs and dampers that are not linear": "the law as the joint's torque or force",
     "yielding springs of free and ball joints": IN_SPACE,

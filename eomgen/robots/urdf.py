@@ -58,7 +58,7 @@ LEFT_OUT = {  # elements without a counterpart, and why
     "hardwareInterface": "settings of a controller",
     "drake:rotor_inertia": "no joint about or along one axis is driven by it",
     "drake:gear_ratio": "no joint about or along one axis is driven by it",
-    "friction": "of Coulomb in a joint",
+    "friction": "below zero: it would drive",
 }
 LEFT_OUT |= {f"{key} of <inertia>": "below zero by rounding: 0" for key in ("ixx", "iyy", "izz")}
 SPEAKING = ("include", "joint")  # elements that are reported by their own names, not by those of their parents
@@ -281,7 +281,9 @@ class _Reading:
         if (dynamics := joint.one("dynamics")) is not None:
             if (damping := dynamics.number("damping", "0")) != 0:
                 keys["damping"] = damping
-            if dynamics.number("friction", "0") != 0:
+            if (friction := dynamics.number("friction", "0")) > 0:
+                keys["friction"] = {"torque" if turns else "force": friction}
+            elif friction < 0:
                 dynamics.read.discard("friction")
         return Moved(keys, name=q)
 

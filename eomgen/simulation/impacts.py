@@ -68,6 +68,7 @@ class WithoutContacts:
         Raises:
             DerivationError: no impulses satisfy the law.
         """
+        self._refuse_rubbing_joints()
         x, nu = self._x(values), len(self.system.symbols.u)
         found = self._matrices.many(t, x[None, :], self.p)[0]
         M, rows = found[: nu * nu].reshape(nu, nu), found[nu * nu :].reshape(-1, nu + 1)
@@ -91,6 +92,17 @@ class WithoutContacts:
         changed = {f"{q.name}'": float(v) for q, v in zip(self.system.symbols.q, rates, strict=True)}
         speeds = {node.name: float(v) for node, v in zip(self.system.symbols.u, after.u, strict=True)}
         return {**values, **changed, **speeds}, impact
+
+    def _refuse_rubbing_joints(self) -> None:
+        """Refuses an impact where friction goes by the force of a joint: an impulse there would rub too.
+
+        Raises:
+            DerivationError: the joint is named.
+        """
+        for body, part in self.system.scope.model.bodies.items():
+            if part.joint is not None and any(law.coulomb is not None for _, _, law in part.joint.frictions):
+                what = f"the friction of '{body}' goes by the force in its joint: an impulse there would rub too"
+                raise DerivationError(what, f"bodies.{body}.joint", "give it a constant size")
 
     @property
     def restitutions(self) -> dict[str, float]:
