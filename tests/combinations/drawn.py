@@ -529,6 +529,8 @@ class Drawing:
             several = {"planar": ("x", "angle"), "cylindrical": ("displacement", "angle")}.get(how, ())
             wide = [-1000, "inf"]
             joint |= {"limits": dict.fromkeys(several, wide) if several else wide, "restitution": 0.3}
+        if extra == "rubbing":
+            joint["friction"] = {"torque" if how in ("revolute", "screw") else "force": 0.4, "smooth": 0.3}
         if extra == "armature":
             joint["armature"] = "I/2" if how in ("revolute", "screw") else "m/2"
         if extra == "drive":

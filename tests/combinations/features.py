@@ -38,7 +38,9 @@ FACTORS: dict[str, tuple[str, ...]] = {
         "revolute", "prismatic", "planar", "free", "placed", "path", "fixed", "cylindrical", "screw", "universal",
         "spherical", "quaternion",
     ),
-    "joint_with": ("nothing", "spring_damper", "drive", "armature", "turned", "moving_seat", "point", "stops"),
+    "joint_with": (
+        "nothing", "spring_damper", "drive", "armature", "turned", "moving_seat", "point", "stops", "rubbing",
+    ),
     "shape": SHAPES,
     "force": FORCES,
     "second_force": FORCES,
@@ -103,6 +105,13 @@ FORBIDDEN: tuple[Forbidden, ...] = (
         "joint",
         ("planar", "free", "placed", "path", "fixed", "cylindrical", "universal", "spherical", "quaternion"),
         "no one variable that a spring could act along",
+        "unknown",
+    ),
+    *_each(
+        ("joint_with", "rubbing"),
+        "joint",
+        ("planar", "free", "placed", "path", "fixed", "cylindrical", "universal", "spherical", "quaternion"),
+        "no one variable that could rub",
         "unknown",
     ),
     *_each(

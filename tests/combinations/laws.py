@@ -667,7 +667,7 @@ def _in_joint(body: dict, now: Any, o: Any, s: Any) -> list[Load]:
     variable = j.get("angle") if j["kind"] in ("revolute", "screw") else j.get("displacement")
     x = jet(now.value(variable)) if variable is not None else jet(0.0)
     value, rate = float(x.c[0][0]), float(x.c[1][0])
-    elastic = EFFORTS["spring"](j, now, value) + EFFORTS["damper"](j, now, rate)
+    elastic = EFFORTS["spring"](j, now, value) + EFFORTS["damper"](j, now, rate) + EFFORTS["rubbing"](j, now, rate)
     turning, pushing = EFFORTS["torque"](j, now), EFFORTS["force"](j, now)
     if j["kind"] in ("revolute", "screw"):
         turning += elastic
@@ -683,9 +683,16 @@ def _in_joint(body: dict, now: Any, o: Any, s: Any) -> list[Load]:
     return [Load(f"joint {name}", b, point, sign * pushing * e, sign * turning * e) for b, sign in both]
 
 
+def _smooth(law: dict, now: Any, rate: float) -> float:
+    """T tanh(s'/v) of dry friction in a joint."""
+    size = law.get("torque", law.get("force"))
+    return 0.0 if size is None else _number(now.value(size)) * float(np.tanh(rate / _number(now.value(law["smooth"]))))
+
+
 EFFORTS: dict[str, Callable] = {
     "spring": lambda j, now, s: -_number(now.value(j.get("stiffness", 0))) * (s - _number(now.value(j.get("rest", 0)))),
     "damper": lambda j, now, rate: -_number(now.value(j.get("damping", 0))) * rate,
+    "rubbing": lambda j, now, rate: -_smooth(j.get("friction", {}), now, rate),
     "torque": lambda j, now: _number(now.value(j.get("torque", 0))),
     "force": lambda j, now: _number(now.value(j.get("force", 0))),
 }

@@ -64,6 +64,9 @@ def product(**levels: str) -> compare.Product:
     return compare.product_of(text_of(PLAIN | levels, 1))
 
 
+TOGETHER = {"spring": "spring_damper", "damper": "spring_damper", "torque": "drive"}  # laws that a joint has together
+
+
 def of_law(table: str, law: str) -> compare.Product:
     """A small model in which the law acts."""
     if table == "JOINTS":
@@ -88,7 +91,7 @@ def of_law(table: str, law: str) -> compare.Product:
         return product(contact="sticking")
     if table == "FRICTION":
         return product(contact={"coulomb": "sliding", "viscous": "viscous"}[law])
-    return product(joint_with={"spring": "spring_damper", "damper": "spring_damper", "torque": "drive"}.get(law, law))
+    return product(joint_with=TOGETHER.get(law, law))
 
 
 def planted(table: str, law: str) -> Callable:
