@@ -411,7 +411,7 @@ def senses_from_rest(G: np.ndarray, b: np.ndarray, kinetic: np.ndarray, static: 
     from scipy.optimize import lsq_linear
 
     found, V = np.linalg.eigh((G + G.T) / 2)
-    kept = found > tolerances.SUMMED * max(float(np.max(np.abs(found), initial=0.0)), 1e-300)
+    kept = found > tolerances.SUMMED * max(float(np.max(np.abs(found), initial=0.0)), tolerances.TINIEST)
     root = np.sqrt(found[kept])
     A, right = root[:, None] * V[:, kept].T, (V[:, kept].T @ b) / root
     senses = np.zeros(len(b), dtype=int)
