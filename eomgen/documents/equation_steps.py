@@ -397,13 +397,13 @@ def friction_of(equations: EquationsOfMotion, reader: Reader) -> FrictionTerms:
             statements += [Formula((normal, value)), *_along(reader, letters, contact, frictions, senses)]
         row = contact.along if contact.normals else substituted(contact.force, senses)
         forces = [total + share * normal for total, share in zip(forces, row, strict=True)]
-    step = Step("friction", "Friction", (prose(WORDS), *statements, *_uniqueness(reader, system)))
+    step = Step("friction", "Friction", (prose(WORDS), *statements, *_uniqueness(system)))
     return FrictionTerms(
         tuple(reader.short_with_symbols(forces)), tuple(definitions), step, _solved_sliding(reader, equations)
     )
 
 
-def _uniqueness(reader: Reader, system: System) -> list[Prose | Formula]:
+def _uniqueness(system: System) -> list[Prose | Formula]:
     """The condition under which friction that depends on the forces of joints has one value."""
     joints = [link.joint for link in system.motion.links if link.joint is not None]
     if not any(law.coulomb is not None for joint in joints for _, _, law in joint.frictions):
@@ -413,7 +413,7 @@ def _uniqueness(reader: Reader, system: System) -> list[Prose | Formula]:
     entries = [("_".join(dict.fromkeys(("D", r, s))), x) for r, row in D.items() for s, x in row.items()]
     positive = system.scope.positive
     shown = [
-        (graph.symbol(name), book_form(readable_value(reader, _while_sliding(x)), Work.ENTRY, positive))
+        (graph.symbol(name), simplest(_while_sliding(x), Work.ANSWER, positive))
         for name, x in entries
         if not is_zero(x)
     ]

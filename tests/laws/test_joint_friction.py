@@ -190,7 +190,7 @@ def test_where_friction_feeds_on_itself_it_has_no_single_value():
     result = run(LOADED.replace("mu = 0.3", "mu = 7").replace("start = 1 ", "start = 1, speed = 1 "), 1)
     assert "the friction of the joint 'rod' has no single value: it grows by 1.05 of itself" in result.message
     text = eomgen.derive(eomgen.loads(LOADED)).render()
-    assert "spectral radius of D is below 1" in text and "3/2*sqrt(mu^2*r^2/l^2)" in text
+    assert "spectral radius of D is below 1" in text and "D_rod = 3*mu*r/(2*l)" in text
 
 
 RAMP = """
@@ -389,3 +389,51 @@ joint = { kind = "revolute", at = "P", angle = "b - pi/2", point = "start" }
     rests = moved["a"][-1]
     assert senses(moved, "left")[-1] == 0 and 3 * G * 0.5 * abs(math.sin(rests)) <= 3
     assert moved.certify().ok
+
+
+def test_statics_gives_the_condition_of_contacts_that_hold_themselves():
+    """A block on a slope: tan(alpha) <= mu; a ladder on a rough floor: 1/(2 tan(alpha)) <= mu."""
+    head = 'eomgen = 1\nspace = "plane"\nforces.weight = { kind = "gravity", acceleration = [0, "-g"] }\n'
+    slope = """
+parameters = { m = 2, g = 9.81, alpha = 0.3, mu = 0.4 }
+coordinates = { s = { start = 0 } }
+[bodies.block]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "placed", at = ["s*cos(alpha)", "-s*sin(alpha)"] }
+[constraints.slope]
+kind = "support"
+point = "block.origin"
+normal = ["sin(alpha)", "cos(alpha)"]
+friction = "mu"
+"""
+    assert [found["condition"] for found in ranges(head + slope)] == ["tan(alpha) <= mu"]
+    ladder = """
+parameters = { m = 10, g = 9.81, l = 4, alpha = 1.1, mu = 0.4 }
+[bodies.ladder]
+shape = { kind = "rod", mass = "m", length = "l" }
+joint = { kind = "free", x = "l*cos(alpha)/2", y = "l*sin(alpha)/2", angle = "pi - alpha" }
+[constraints]
+floor = { kind = "support", point = "ladder.start", normal = [0, 1], friction = "mu" }
+wall = { kind = "support", point = "ladder.end", normal = [1, 0] }
+"""
+    (found,) = ranges(head + ladder)
+    assert (found["name"], found["condition"]) == ("floor", "1/(2*tan(alpha)) <= mu")
+    assert found["high"] == pytest.approx(0.4 * 10 * G) and found["low"] == -found["high"]
+
+
+def test_many_runs_stick_and_slip_as_each_alone():
+    model = eomgen.loads(HINGE)
+    many = eomgen.simulate_many(model, time=3, start={"q": [1, 0.5, 0.1]}, target="numpy", rtol=1e-11, atol=1e-11)
+    alone = [
+        eomgen.simulate(model, time=3, start={"q": q}, target="numpy", rtol=1e-11, atol=1e-11) for q in (1, 0.5, 0.1)
+    ]
+    assert many.x[:, -1, 0] == pytest.approx([each["q"][-1] for each in alone], abs=1e-10)
+
+
+def test_a_regressor_has_friction_as_a_parameter_and_an_impact_with_a_rubbing_hinge_is_refused():
+    """tau = ... + sign(q') T_c; the impulse of an impact would rub in a hinge with mu r |R|."""
+    found = eomgen.regressor(eomgen.loads(HINGE))
+    assert "friction(rod)" in found.parameters and found.certify().ok
+    text = LOADED.replace("friction =", "limits = [-0.3, 2]\nrestitution = 0.5\nfriction =")
+    assert "an impulse there would rub too" in run(text, 1).message
+    assert run(text.replace('coefficient = "mu", radius = "r"', "torque = 0.3"), 1).impacts
