@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import random
+import re
 from pathlib import Path
 
 import numpy as np
@@ -203,6 +204,17 @@ forces.load = { kind = "force", point = "beam.C", force = [0, "-F"] }
 def test_shares_of_a_self_stress(equation, expected):
     """Two pins on one line press against each other by any force: A_x and B_x take opposite shares of it."""
     assert eomgen.verify(eomgen.loads(PROPPED), equation).verdict == expected
+
+
+@pytest.mark.slow
+@each("form", ["text", "latex"])
+def test_printed_shares_of_a_self_stress_are_right(form):
+    """Of joints in space, along the axes of their bodies: each line that a derivation prints."""
+    page = eomgen.derive(loaded(MODELS / "robot_with_trailer.toml"), method="kinetostatic").render(form)
+    lines = [line.strip() for line in page.splitlines() if re.match(r"\s*\\?Delta[(_]", line)]
+    assert len(lines) > 3
+    for line in lines:
+        assert eomgen.verify(loaded(MODELS / "robot_with_trailer.toml"), line).verdict == "right", line
 
 
 @each(

@@ -365,8 +365,8 @@ class Judge:
         return () if found is None else (found,)
 
     def _said(self, verdict: Verdict, defined: Mapping[str, Expression] | None) -> JudgedEquation | None:
-        empty = any(cause.quantity in SAYS_NOTHING for cause in verdict.causes)
-        if verdict.verdict == UNDECIDED or empty:
+        empty = any(x.quantity in SAYS_NOTHING or x.quantity.startswith("Delta(") for x in verdict.causes)
+        if verdict.verdict == UNDECIDED or empty or "self-stress" in verdict.up_to:
             return None
         begun = self.case.as_begun if any(x in verdict.up_to for x in BEGUN) else None
         equations = (begun or self.case).equations

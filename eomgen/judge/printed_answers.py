@@ -11,15 +11,17 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
+from eomgen.documents import lettered
 from eomgen.errors import DerivationError, EomgenError, ExpressionError, MissingValues
 from eomgen.frozen import dataclass
 from eomgen.judge.case import Case
 from eomgen.judge.comparison import excess
 from eomgen.judge.decision import is_zero_everywhere
-from eomgen.judge.reading import HandEquation
+from eomgen.judge.reading import DERIVED, HandEquation
 from eomgen.judge.verdict import RIGHT, UNDECIDED, WRONG, Cause, Verdict
 from eomgen.mechanics.linearization import LinearEquations, Modes, StateMatrices
 from eomgen.mechanics.statics import SectionForces
@@ -282,8 +284,9 @@ EXTREME = re.compile(
     re.S,
 )
 DELTA = re.compile(
-    r"\s*(?:\\?Delta|Δ)(?:_\{(?P<index>.+)\}|\((?P<letter>.+)\)|\s*(?P<plain>[A-Z]\w*))\s*=(?P<right>.*)", re.S
+    r"\s*(?:\\?Delta|Δ)(?:_\{(?P<index>.+)\}|\((?P<letter>.+)\)|\s*(?P<plain>[A-Z]\w*))\s*&?=(?P<right>.*)", re.S
 )
+BREAK = "\\ "  # \\\\ at the end of a row
 PLACE = "the place of an extreme of M"
 
 
@@ -394,17 +397,20 @@ def _greatest(forces: SectionForces) -> list[Scalar]:
 def _of_share(case: Case, given: str, found: re.Match[str]) -> Verdict | None:
     """The share of a reaction in a self-stress of any size k."""
     reactions = case.quantities.reactions
-    with suppress(ExpressionError):
+    with suppress(ExpressionError, DerivationError):
         letter = found["letter"] or found["index"] or found["plain"]
         calls = case.reading.read(f"{letter} = 0").left.calls
-        right = case.reading.read(f"{found['right']} = 0").left
+        right = case.reading.read(f"{found['right'].rstrip(BREAK)} = 0").left
         unknown = sorted(right.names - case.system.scope.names.keys() - {"pi"})
         if len(unknown) > 1 or len(calls) != 1 or not reactions.null_space:
             return None
         name = unknown[0] if unknown else "k1"
         k = case.system.scope.graph.symbol(name)
         author = case.value(right, {name: k})
-        shares = [case.own(x) * k for space in reactions.null_space for y, x in space.items() if y == str(calls[0])]
+        key = _component_of(case, calls[0])
+        shares = [case.own(x) * k for space in reactions.null_space for y, x in space.items() if y == key]
+        if not shares:
+            case.called(calls[0])  # what is not determined has no value
         if any(is_zero_everywhere(case.system, author - share).holds for share in shares or [0]):
             return Verdict(given, "statics", RIGHT, f"the self-stress {name}, of any size" if shares else "")
         true = " or ".join(f"Delta({letter}) = {readable_text(share)}" for share in shares)
@@ -414,3 +420,14 @@ def _of_share(case: Case, given: str, found: re.Match[str]) -> Verdict | None:
         text = f"it is {true}" if shares else f"the balance determines {letter}: no self-stress changes it"
         return Verdict(given, "statics", WRONG, causes=(Cause("other", text, quantity=f"Delta({letter})"),))
     return None
+
+
+def _component_of(case: Case, call: Call) -> str:
+    """The component of a reaction that a function or a name of derivations asks for, as self-stresses have it."""
+    reactions, names = case.quantities.reactions, case.system.scope.names
+    if call.name == DERIVED:
+        letters = [x.name for x in lettered(reactions, names).symbols]
+        asked = call.name_at(0)
+        return reactions.components[letters.index(asked)].name if asked in letters else ""
+    of_body = len(call.args) == 2 and call.args[0] == call.args[1]  # along its own axes, as derivations have it
+    return str(replace(call, args=call.args[:1])) if of_body else str(call)
