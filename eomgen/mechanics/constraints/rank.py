@@ -35,6 +35,7 @@ from eomgen.symbolic.expression import (
     is_zero,
     jacobian,
     over,
+    substituted,
     tangent,
 )
 from eomgen.symbolic.numeric import (
@@ -500,7 +501,8 @@ def _forms_of(constraints: Constraints, state: State) -> _Forms:
     free = [k for k, x in enumerate(q) if not scope.model.coordinates[x.name].driven]
 
     def form(entries: dict[int, Scalar], at_rest: Scalar) -> DifferentialForm:
-        return (*(entries.get(k, 0) for k in range(len(q))), at_rest)
+        written = (*(entries.get(k, 0) for k in range(len(q))), at_rest)
+        return substituted(written, scope.laws) if scope.laws else written  # a name hides the time in a given rate
 
     rows = [
         (row, form(dict(zip(free, J, strict=True)), sigma))
