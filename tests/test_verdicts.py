@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
@@ -432,6 +433,56 @@ def test_a_judge_that_errs_fails_its_certificate(monkeypatch):
     monkeypatch.setattr("eomgen.judge.judge.truth_of", lambda *_, **__: Decided(True))
     result = CliRunner().invoke(main, ["verify", "-", "l*theta'' = g*sin(theta)"], input=PENDULUM)
     assert result.exit_code == 3 and "it is judged right, and its sides differ" in result.output
+
+
+PUSHED = (
+    CART.replace("M = 2", "F = 30, M = 2")
+    + """
+[forces.push]
+kind = "force"
+point = "cart.origin"
+force = ["F", 0]
+"""
+)
+JIB = """
+eomgen = 1
+space = "plane"
+parameters = { M = 10, m = 4, l = 2, b = 1.5, k = 900, g = 9.81 }
+coordinates = { alpha = 0.1, beta = 0.4 }
+bodies.jib.shape = { kind = "rod", mass = "M", length = "l" }
+bodies.jib.joint = { kind = "revolute", point = "start", angle = "alpha" }
+bodies.load.shape = { kind = "rod", mass = "m", length = "b" }
+bodies.load.joint = { kind = "revolute", on = "jib.end", point = "start", angle = "beta - pi/2 - alpha" }
+forces.weight = { kind = "gravity", acceleration = [0, "-g"] }
+forces.spring = { kind = "torsion_spring", body = "jib", stiffness = "k" }
+"""
+
+
+@each(
+    "text, equation, right",
+    [
+        (PENDULUM, "theta'' = -g/l*theta", True),
+        (PENDULUM, "theta'' = g/l*theta", False),
+        (PUSHED, "l*phi'' + x'' = -g*phi", True),  # it is pushed: 0 is no equilibrium
+        (PUSHED, "(M + m)*x'' + m*l*phi'' = F", True),
+        (PUSHED, "(M + m)*x'' + m*l*phi'' = 2*F", False),
+        (JIB, "2*b*beta'' - 3*l*alpha''*(alpha - beta) = -3*g*beta", True),
+        (JIB, "beta'' = -3*g/(2*b)*beta", False),  # alpha'' is not small where the jib does not rest
+    ],
+)
+def test_what_is_right_to_first_order_alone_is_proven_so(text, equation, right):
+    """The difference of the sides falls to a quarter where the distance from the place is halved."""
+    result = CliRunner().invoke(main, ["verify", "-", equation, "--to-first-order"], input=text)
+    assert result.exit_code == (0 if right else 5) and "certificate: holds" in result.output, result.output
+
+
+@pytest.mark.parametrize("option", [[], ["--to-first-order"]])
+def test_a_first_order_that_is_none_fails_its_certificate(monkeypatch, option):
+    """Whether it is asked for that order, or told that it is right to it."""
+    nowhere = lambda case, *_: dict.fromkeys(case.system.symbols.q, Fraction(0))  # noqa: E731
+    monkeypatch.setattr("eomgen.judge.judge.first_order_place", nowhere)
+    result = CliRunner().invoke(main, ["verify", "-", "beta'' = -3*g/(2*b)*beta", *option], input=JIB)
+    assert result.exit_code == 3 and "it is judged right to the first order" in result.output
 
 
 @each("equation", ["V = -m*g*l*cos(theta) + 7*m", "T + V = E", "omega = sqrt(g/l)", "theta = 0"])

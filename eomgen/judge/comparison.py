@@ -377,6 +377,7 @@ def first_order_place(
     """The place beside which an equation is right to the first order; None: beside none, or it approximates nothing.
 
     Only what is linear there, or holds no sine and cosine where the model has some, was meant as an approximation.
+    Accelerations are small beside an equilibrium alone: elsewhere their products with a coordinate are of first order.
 
     Args:
         about: the place that is meant; None: 0, or an equilibrium.
@@ -393,9 +394,11 @@ def first_order_place(
     for place in ({}, *case.places_of_rest) if about is None else (about,):
         beside = {**still, **place}
         with suppress(DerivationError):
-            (near,) = linearized((scalar,), beside)
-            rests = all(is_zero(x) for x in substituted((scalar,), beside)) or about is not None
-            if rests and depends_on(near, symbols.a) and case.follows(near, linearized(rows, beside)).holds:
+            at_rest = all(is_zero_everywhere(case.system, x).holds for x in substituted(rows, beside))
+            rests = not at_rest or all(is_zero(x) for x in substituted((scalar,), beside)) or about is not None
+            small = beside if at_rest else {x: beside[x] for x in symbols.x}
+            (near,) = linearized((scalar,), small)
+            if rests and depends_on(near, symbols.a) and case.follows(near, linearized(rows, small)).holds:
                 return {q: beside[q] for q in symbols.q}
     return None
 

@@ -3,7 +3,8 @@
 Both sides are evaluated in doubles, with a bound of their rounding, at consistent states: near the start with the
 model's own parameters, at random ones with others, or along a run from the start (Runge-Kutta, order 4, the step
 halved). Accelerations come from dense linear algebra, reactions from the free bodies in doubles, functions of the
-motion from their second definitions. A right equation has sides that agree at all of them; a wrong one does not.
+motion from their second definitions. A right equation has sides that agree at all of them; a wrong one does not. What
+is right to the first order about a place has a difference that falls to a quarter where the way there is halved.
 """
 
 from __future__ import annotations
@@ -37,6 +38,7 @@ from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 NEAR, FAR = 5, 2  # states near the start, and at random with other parameters
 STEPS, TIMES = 48, 4  # of a run; at how many of its instants the sides are compared
 LENGTHS = (0.4, 0.1, 0.02)  # s
+BESIDE = 1e-4  # rad, m, rad/s, m/s: how far from a place the first order is looked at
 STILL = 1e-3  # of the size of a coordinate or speed: a motion that changes less decides nothing
 EPSILON = float(np.finfo(float).eps)
 SURE = 30  # times the bound of rounding, from which on two numbers differ
@@ -123,6 +125,8 @@ class _Again:
             raise NoValue(f"it holds {each.up_to}, and not elsewhere")
         if len(each.constants) > 1 or (each.constants and not each.is_right):
             raise NoValue("constants of the author's own")
+        if self._place:
+            return ("" if each.is_right else self._of_wrong()) or self._of_first_order()
         return (self._of_right() if each.is_right else self._of_wrong()) or self._of_reported()
 
     def _of_right(self) -> str:
@@ -142,6 +146,32 @@ class _Again:
         if len(apart) < 2:
             raise NoValue("no state has values for it")
         return "it is judged wrong, and its sides agree" if all(x.may_vanish for x in apart) else ""
+
+    @cached_property
+    def _place(self) -> dict[str, str]:
+        """{coordinate: its value} of the place about which it is right to the first order; {}: of another verdict."""
+        found = self.judged.up_to.partition("first order about ")[2]
+        return dict(each.split(" = ") for each in _NEXT.split(found)) if found else {}
+
+    def _of_first_order(self) -> str:
+        """Message if the difference of the sides does not fall faster than the distance from the place; ""."""
+        decided = False
+        for k, base in enumerate(self._nearby()):
+            at = {name: self._reported(text, base) for name, text in self._place.items()}
+            if any(x is None for x in at.values()):
+                continue
+            rng = Random(k)
+            way = {x: rng.uniform(-1, 1) for x in base.equations.symbols.x}
+            whole, half = (self._apart(_beside(base, at, way, part * BESIDE)) for part in (1.0, 0.5))  # type: ignore[arg-type]
+            if whole is None or half is None:
+                continue
+            decided = True
+            if not Rounded(max(abs(half.value) - abs(whole.value) / 3, 0.0), whole.error + half.error).may_vanish:
+                sizes = f"{whole.value:.6g} and {half.value:.6g} at half the distance"
+                return f"it is judged right to the first order, and its sides differ by {sizes}"
+        if not decided:
+            raise NoValue("no state beside the place has values for it")
+        return ""
 
     def _of_reported(self) -> str:
         """Message if the reported factor, or the reported difference, is 0 at every state; ""."""
@@ -170,6 +200,7 @@ class _Again:
         """States that satisfy the constraints: near the start, then random ones."""
         equations, up_to = self.judged.equations, self.judged.up_to
         own = any(word in up_to for word in (*OF_THE_FILE, "holds where", "a constant of"))
+        own |= any(text != "0" for text in self._place.values())  # it may be that of the file's values alone
         for name, supply in Trials(equations).states.supplies:
             if name != "at random" or not own:
                 count = NEAR if name == "at the start" else FAR
@@ -219,6 +250,14 @@ class _Again:
         for k in range(1, TIMES + 1):
             numbers = {symbols.t: length * k / TIMES} | dict(zip(moving, fine[k].tolist(), strict=True))
             yield NumericState(equations, parameters, numbers)
+
+
+def _beside(base: NumericState, at: Mapping[str, Rounded], way: Mapping[Node, float], part: float) -> NumericState:
+    """The state that lies a part of a way from a place at rest."""
+    start = {x: at[x.name].value if x.name in at else 0.0 for x in way}
+    t = base.equations.symbols.t
+    numbers = {t: base.numbers[t]} | {x: start[x] + part * step for x, step in way.items()}
+    return NumericState(base.equations, base.parameters, numbers)
 
 
 def _runge_kutta(
@@ -297,6 +336,7 @@ def _conditions(up_to: str) -> list[Expression]:
     return found
 
 
+_NEXT = re.compile(r", (?=[^\s=,]+ = )")
 _FACTOR = re.compile(r"the factor (\S+(?: [-+] \S+)*)")
 _COMPARED = re.compile(r"([^<>=]+?)\s*(<=|>=|<|>)\s*([^<>=]+)")
 
