@@ -50,6 +50,7 @@ from eomgen.symbolic.expression import (
 from eomgen.symbolic.numeric import tolerances
 
 LONGEST = 3000  # operations of equations that are looked at term by term
+_TURNING = frozenset(("abs", "sign", "min", "max", "less", "less_equal"))  # where what is left of the first is 0
 EXTRA = 5.6  # rank of a term of the author that does not belong there
 
 
@@ -397,6 +398,8 @@ def first_order_place(
             at_rest = all(is_zero_everywhere(case.system, x).holds for x in substituted(rows, beside))
             rests = not at_rest or all(is_zero(x) for x in substituted((scalar,), beside)) or about is not None
             small = beside if at_rest else {x: beside[x] for x in symbols.x}
+            if _has_a_corner((*rows, scalar), moving, beside):
+                continue  # no first order: the slopes differ from side to side
             (near,) = linearized((scalar,), small)
             if rests and depends_on(near, symbols.a) and case.follows(near, linearized(rows, small)).holds:
                 return {q: beside[q] for q in symbols.q}
@@ -411,6 +414,12 @@ def is_linear(rows: ScalarRow, moving: tuple[Node, ...]) -> bool:
 def _bent(rows: ScalarRow, moving: tuple[Node, ...]) -> bool:
     """True if a function of an angle that moves stands in rows."""
     return any(x.op in ("sin", "cos", "tan") and depends_on(x, moving) for x in order(rows))
+
+
+def _has_a_corner(rows: ScalarRow, moving: tuple[Node, ...], place: Mapping[Node, Scalar]) -> bool:
+    """True if a function of what moves has a corner or a jump at a place: |x|, max(0, x) and the like at x = 0."""
+    turning = [x for x in order(rows) if x.op in _TURNING and depends_on(x, moving)]
+    return any(is_zero(x) for x in substituted([x.args[0] - sum(x.args[1:]) for x in turning], place))
 
 
 def _linearized(known: Iterable[Mistake], place: Mapping[Node, Scalar]) -> Iterator[Mistake]:

@@ -38,7 +38,6 @@ from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 NEAR, FAR = 5, 2  # states near the start, and at random with other parameters
 STEPS, TIMES = 48, 4  # of a run; at how many of its instants the sides are compared
 LENGTHS = (0.4, 0.1, 0.02)  # s
-BESIDE = 1e-4  # rad, m, rad/s, m/s: how far from a place the first order is looked at
 STILL = 1e-3  # of the size of a coordinate or speed: a motion that changes less decides nothing
 EPSILON = float(np.finfo(float).eps)
 SURE = 30  # times the bound of rounding, from which on two numbers differ
@@ -162,7 +161,7 @@ class _Again:
                 continue
             rng = Random(k)
             way = {x: rng.uniform(-1, 1) for x in base.equations.symbols.x}
-            whole, half = (self._apart(_beside(base, at, way, part * BESIDE)) for part in (1.0, 0.5))  # type: ignore[arg-type]
+            whole, half = (self._apart(_beside(base, at, way, part * tolerances.BESIDE_A_PLACE)) for part in (1.0, 0.5))  # type: ignore[arg-type]
             if whole is None or half is None:
                 continue
             decided = True
