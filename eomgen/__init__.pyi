@@ -67,8 +67,8 @@ from eomgen.results.at_instant.result import Kinematics as Kinematics
 from eomgen.results.at_instant.result import kinematics as kinematics
 from eomgen.results.at_rest.result import Statics as Statics
 from eomgen.results.at_rest.result import statics as statics
-from eomgen.results.bodies_cut_free.result import FreeBodies as FreeBodies
-from eomgen.results.bodies_cut_free.result import free_bodies as free_bodies
+from eomgen.results.bodies_cut_free import FreeBodies as FreeBodies
+from eomgen.results.bodies_cut_free import free_bodies as free_bodies
 from eomgen.results.mass_properties.result import Inertia as Inertia
 from eomgen.results.mass_properties.result import inertia as inertia
 from eomgen.results.small_motions.result import Linearization as Linearization

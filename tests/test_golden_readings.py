@@ -25,8 +25,8 @@ from slow_run import sampled
 
 from eomgen.cli import main
 from eomgen.model import load
-from eomgen.scene import SceneNumbers, drawn_start, frame_at, plane_drawing, scene_of_system, space_drawing
-from eomgen.study import study_of
+from eomgen.scene import SceneNumbers, drawing_of, scene_of_system
+from eomgen.study import StateInNumbers, study_of
 
 pytestmark = pytest.mark.slow  # a minute of CPU: verbs with their proofs and pictures
 HOME = Path(__file__).parent / "golden" / "readings"
@@ -74,8 +74,7 @@ def strokes(model: str) -> Iterator[str]:
     """What is drawn of a model at its start, with dimensions, a line each."""
     system = study_of(load(MODELS / f"{model}.toml")).system
     scene = scene_of_system(system)
-    numbers = SceneNumbers(scene, frame_at(scene, drawn_start(system))[None, :])
-    drawing = (plane_drawing if scene.plane else space_drawing)(numbers, dimensions=True)
+    drawing = drawing_of(SceneNumbers.at(scene, StateInNumbers.at_start(system)), dimensions=True)
     for stroke in drawing.strokes:
         path = stroke.path[0]
         yield f"{stroke.role} of {stroke.of!r}: {places(path.reshape(-1, path.shape[-1]))}"

@@ -13,7 +13,8 @@ from slow_run import sampled
 
 import eomgen
 from eomgen.page.figure import rest_figure
-from eomgen.scene.scene import Mark, Scene, drawn_start, frame_at
+from eomgen.scene.scene import Mark, Scene, frame_at
+from eomgen.study import StateInNumbers
 
 ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT / "docs" / "_ext"))
@@ -61,7 +62,7 @@ def test_every_kind_has_a_picture(kind, tmp_path):
     if kinds.kinds()[kind] != "Shapes":  # a shape is drawn here by its marks alone, in full when the site is built
         rest_figure(kinds.example(kind)).save(tmp_path / "it.svg")
         assert (tmp_path / "it.svg").read_text("utf-8").count("<path") > 5
-    frame = frame_at(scene, drawn_start(scene.system))
+    frame = frame_at(scene, StateInNumbers.at_start(scene.system))
     assert np.isfinite(frame).all()
     assert kind in NOT_DRAWN or marks_of(kind, scene), f"no mark of it in the picture of '{kind}'"
 

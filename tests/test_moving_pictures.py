@@ -34,7 +34,7 @@ from eomgen.scene.forms import ArrowForm, CoupleForm
 from eomgen.scene.frames_of_phases import phase_frames
 from eomgen.scene.making import scene_of_system
 from eomgen.scene.scene import frames_along, scalars_of
-from eomgen.scene.space_strokes import space_drawing
+from eomgen.scene.space_strokes import drawing_of
 from eomgen.scene.strokes import SceneNumbers
 from eomgen.scene.virtual import SWING, VirtualDisplacement
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
@@ -378,7 +378,7 @@ def test_of_a_solid_the_faces_towards_the_eye_are_drawn():
         scene = scene_of_system(system)
         x = np.array([[0.3, 0.0]])
         numbers = SceneNumbers(scene, frames_along(scene, np.zeros(1), x, np.array([1.0])))
-        drawing = space_drawing(numbers)
+        drawing = drawing_of(numbers)
         (whole,) = (stroke for stroke in drawing.strokes if stroke.faces and stroke.role == "body")
         picture = SpacePicture(Figure().subplots(), replace(drawing, strokes=(whole,)))
         picture.show(0)

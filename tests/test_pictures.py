@@ -16,8 +16,9 @@ from eomgen.model.reader import loads
 from eomgen.results.mass_properties.result import values_at_start
 from eomgen.scene import forms, plane_strokes
 from eomgen.scene.making import is_freer_outward, scene_of, scene_of_inertia
-from eomgen.scene.scene import Mark, drawn_start, frame_at
+from eomgen.scene.scene import Mark
 from eomgen.scene.strokes import PictureSizes, SceneNumbers
+from eomgen.study import StateInNumbers
 
 pytestmark = pytest.mark.slow
 
@@ -65,7 +66,7 @@ def test_an_arrow_is_drawn_on_the_side_where_it_meets_fewer_lines():
 def test_a_spring_is_a_zigzag_from_end_to_end():
     """It begins and ends at its points, and swings by its width to both sides of the line between them."""
     scene = eomgen.load(MODELS / "simple_pendulum.toml").scene()
-    numbers = SceneNumbers(scene, frame_at(scene, drawn_start(scene.system))[None, :])
+    numbers = SceneNumbers.at(scene, StateInNumbers.at_start(scene.system))
     form = forms.SpringForm((1, 1, 0), (4, 5, 0))
     sizes = PictureSizes(0.3 / 0.55, np.zeros(2), np.ones(2))
     (stroke,), _ = plane_strokes.TABLE[forms.SpringForm](form, Mark(form), numbers, sizes)

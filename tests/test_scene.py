@@ -23,9 +23,10 @@ from eomgen.mechanics.dynamics.system import system_of
 from eomgen.scene import forms, plane_strokes, space_strokes
 from eomgen.scene.bodies import parameters_as_drawn
 from eomgen.scene.making import scene_of_system
-from eomgen.scene.scene import ROLES, Mark, Scene, drawn_start, frame_at, plain_number
-from eomgen.scene.space_strokes import space_drawing
+from eomgen.scene.scene import ROLES, Mark, Scene, frame_at, plain_number
+from eomgen.scene.space_strokes import drawing_of
 from eomgen.scene.strokes import PictureSizes, SceneNumbers
+from eomgen.study import StateInNumbers
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.print.names import COMMANDS, SIGNS, Symbol
 
@@ -40,7 +41,7 @@ class Reader:
     """A scene as a drawer reads it: from its JSON and the numbers of one frame."""
 
     def __init__(self, scene: Scene, shift: float = 0.0) -> None:
-        state = drawn_start(scene.system)
+        state = StateInNumbers.at_start(scene.system)
         unit = {e for four in scene.system.scope.quaternions for e in four}
         free = [node not in unit for node in scene.system.symbols.q] + [False] * len(
             scene.system.symbols.x[len(scene.system.symbols.q) :]
@@ -162,7 +163,7 @@ def test_the_ends_of_a_double_pendulum_are_where_trigonometry_puts_them():
 def test_a_parameter_moves_lengths():
     """The slots of a frame are functions of the parameters: a longer arm ends elsewhere."""
     scene = scene_named("double_pendulum")
-    state = drawn_start(scene.system)
+    state = StateInNumbers.at_start(scene.system)
     longer = type(state)(state.t, state.x, 2 * state.p)
     assert not np.allclose(frame_at(scene, state), frame_at(scene, longer))
 
@@ -210,7 +211,7 @@ def test_each_kind_is_drawn_by_each_drawer(kind, space):
         return
     name = "double_pendulum" if space == "plane" else "arm3"
     scene = scene_named(name)
-    numbers = SceneNumbers(scene, frame_at(scene, drawn_start(scene.system))[None, :])
+    numbers = SceneNumbers.at(scene, StateInNumbers.at_start(scene.system))
     d = numbers.dimension
     sizes = PictureSizes(0.1, -np.ones(d), np.ones(d), {("body", "N"): 1.0}, True)
     form = one_of_each(kind)
@@ -446,13 +447,13 @@ kind = "gravity"
 acceleration = {list(gravity)}
 """
     scene = eomgen.loads(text).scene()
-    numbers = SceneNumbers(scene, frame_at(scene, drawn_start(scene.system))[None, :])
-    assert np.allclose(space_drawing(numbers).sizes.up, up)
+    numbers = SceneNumbers.at(scene, StateInNumbers.at_start(scene.system))
+    assert np.allclose(drawing_of(numbers).sizes.up, up)
 
 
 def drawn_at_start(name: str) -> tuple[Scene, SceneNumbers]:
     scene = eomgen.load(MODELS / f"{name}.toml").scene()
-    return scene, SceneNumbers(scene, frame_at(scene, drawn_start(scene.system))[None, :])
+    return scene, SceneNumbers.at(scene, StateInNumbers.at_start(scene.system))
 
 
 def test_what_is_fixed_on_a_block_leaves_it_a_block():
@@ -497,13 +498,13 @@ def test_two_shafts_that_meet_go_apart():
 @pytest.mark.parametrize("name", ["gimbal_gyroscope", "gyrocompass", "satellite_wheels", "epicyclic_gear"])
 def test_bodies_with_one_middle_have_their_names_at_their_rims(name: str):
     """Each at a place of its own; of bodies apart the names stay at their middles"""
-    scene, numbers = drawn_at_start(name)
-    drawing = (plane_strokes.plane_drawing if scene.plane else space_drawing)(numbers)
+    _, numbers = drawn_at_start(name)
+    drawing = drawing_of(numbers)
     places = {letter.of: letter.at[0] for letter in drawing.letters if letter.role == "label"}
     apart = [np.linalg.norm(a - b) for one, a in places.items() for other, b in places.items() if one < other]
     assert min(apart) > drawing.sizes.unit
     pendulum, at = drawn_at_start("double_pendulum")
-    kept = {letter.of: letter.at[0] for letter in plane_strokes.plane_drawing(at).letters if letter.role == "label"}
+    kept = {letter.of: letter.at[0] for letter in drawing_of(at).letters if letter.role == "label"}
     middles = {
         mark.of: at.spot(mark.form.at, mark)[0] for mark in pendulum.marks_of_kind("label") if mark.role == "label"
     }
@@ -663,10 +664,10 @@ shape = { kind = "particle", mass = 1 }
 joint = { kind = "prismatic", on = "arm", axis = [1, 0], displacement = "s", force = 30 }
 """
     scene = eomgen.loads(text).scene()
-    state = drawn_start(scene.system)
+    state = StateInNumbers.at_start(scene.system)
     longer = state.x + np.array([0, 0.3, 0, 0])
     frames = np.array([frame_at(scene, type(state)(0.0, x, state.p)) for x in (state.x, longer)])
-    (stroke,) = (s for s in plane_strokes.plane_drawing(SceneNumbers(scene, frames)).strokes if s.role == "cylinder")
+    (stroke,) = (s for s in drawing_of(SceneNumbers(scene, frames)).strokes if s.role == "cylinder")
     barrels = np.linalg.norm(stroke.path[:, 4] - stroke.path[:, 3], axis=1)
     assert barrels[0] == pytest.approx(barrels[1] * 1.0, rel=1e-2) and 0.4 < barrels[0] < 0.9
     ways = np.linalg.norm(stroke.path[:, -1] - stroke.path[:, 0], axis=1)

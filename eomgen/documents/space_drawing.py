@@ -41,14 +41,12 @@ from eomgen.scene import (
     SceneNumbers,
     Stroke,
     corners_of,
-    drawn_start,
-    frame_at,
-    plane_drawing,
+    drawing_of,
     scene_of,
     scene_of_system,
     scene_with,
-    space_drawing,
 )
+from eomgen.study import StateInNumbers
 from eomgen.symbolic.expression import Node, Scalar, Vector
 from eomgen.symbolic.numeric import numbers_of
 from eomgen.symbolic.print import Notation, Symbol
@@ -387,8 +385,7 @@ def rest_picture(model: Model) -> Picture:
 
 def drawing_at_rest(scene: Scene) -> Drawing:
     """A scene at the start of its model, with its dimensions."""
-    numbers = SceneNumbers(scene, frame_at(scene, drawn_start(scene.system))[None, :])
-    return (plane_drawing if scene.plane else space_drawing)(numbers, dimensions=True)
+    return drawing_of(SceneNumbers.at(scene, StateInNumbers.at_start(scene.system)), dimensions=True)
 
 
 def picture_of_scene(scene: Scene) -> Picture:
@@ -482,8 +479,7 @@ class Sketch:
     @cached_property
     def drawing(self) -> Drawing:
         """The strokes of its scene there."""
-        drawer = plane_drawing if self.plane else space_drawing
-        return drawer(self.frame, dimensions=self.dimensions, arrow=self.longest)
+        return drawing_of(self.frame, dimensions=self.dimensions, arrow=self.longest)
 
     def lines(self, roles: Iterable[str], of: str = "") -> list[np.ndarray]:
         """Lines of the page that its strokes of some roles are; `of`: of one body alone."""

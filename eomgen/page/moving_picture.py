@@ -37,22 +37,21 @@ from eomgen.mechanics.linearization import Mode, Modes
 from eomgen.model import nearest
 from eomgen.scene import (
     Drawing,
-    DrawnState,
     Scene,
     SceneFrame,
     SceneNumbers,
     Stroke,
     VirtualDisplacement,
     corners_of,
+    drawing_of,
     frames_along,
     named_points,
     phase_frames,
-    plane_drawing,
     scene_of_system,
-    space_drawing,
     swing_of,
 )
 from eomgen.simulation import Trajectory
+from eomgen.study import StateInNumbers
 from eomgen.symbolic.numeric import tolerances
 
 WIDTH, HIGHEST, DOTS = 4.8, 4.8, 100  # of a moving picture [inches, dots an inch]
@@ -397,9 +396,8 @@ def _trails(
 
 
 def _movie(numbers: SceneNumbers, times: np.ndarray, trails: Mapping[str, np.ndarray], title: str = "") -> Movie:
-    plane = numbers.scene.plane
-    drawing = (plane_drawing if plane else space_drawing)(numbers)
-    return Movie(drawing, times, plane, trails, title, scene=numbers.scene, way=_far_way(numbers, drawing))
+    drawing, scene = drawing_of(numbers), numbers.scene
+    return Movie(drawing, times, scene.plane, trails, title, scene=scene, way=_far_way(numbers, drawing))
 
 
 def _far_way(numbers: SceneNumbers, drawing: Drawing) -> np.ndarray | None:
@@ -462,7 +460,7 @@ def _mode_movie(modes: Modes, mode: Mode, number: int, count: int) -> Movie:
     """q = q_0 + a Re(shape e^(i phase)) over one turn of the phase."""
     system = modes.small.reference.system
     scene = scene_of_system(system)
-    at = reference_state(modes)
+    at = StateInNumbers.of(system, modes.small.reference.numbers)
     shape = np.array([complex(mode.shape.get(q, 0.0)) for q in system.symbols.q] + [0.0] * len(system.symbols.u))
     phase = 2 * np.pi * np.arange(count) / count
     swung = np.real(shape[None, :] * np.exp(1j * phase)[:, None])
@@ -472,16 +470,7 @@ def _mode_movie(modes: Modes, mode: Mode, number: int, count: int) -> Movie:
     return _movie(SceneNumbers(scene, frames), phase / (frequency or 1.0), {}, f"{number}: {frequency:.4g} rad/s")
 
 
-def reference_state(modes: Modes) -> DrawnState:
-    """The state about which small motions are looked at."""
-    system, numbers = modes.small.reference.system, modes.small.reference.numbers
-    symbols = system.symbols
-    x = [float(numbers.get(node, 0.0)) for node in symbols.x]
-    p = [float(numbers[node]) for node in symbols.parameters.values()]
-    return DrawnState(float(numbers.get(symbols.t, 0.0)), np.array(x), np.array(p))
-
-
-def swing(scene: Scene, at: DrawnState, swung: np.ndarray) -> float:
+def swing(scene: Scene, at: StateInNumbers, swung: np.ndarray) -> float:
     """Amplitude of a mode's picture: the body that moves most moves by a part of the picture."""
     states = np.vstack([at.x[None, :], at.x + tolerances.WIDE_STEP * swung])
     numbers = SceneNumbers(scene, frames_along(scene, np.full(len(states), at.t), states, at.p))

@@ -22,13 +22,13 @@ from eomgen.results.at_rest.result import why_not_at_rest as why_not_at_rest
 from eomgen.results.at_rest.steps import virtual_work_step as virtual_work_step
 
 # A force or a couple on a body that is cut free
-from eomgen.results.bodies_cut_free.result import BodyForce as BodyForce
+from eomgen.results.bodies_cut_free import BodyForce as BodyForce
 
 # Every body of a model cut free, at one instant
-from eomgen.results.bodies_cut_free.result import FreeBodies as FreeBodies
+from eomgen.results.bodies_cut_free import FreeBodies as FreeBodies
 
 # Each body of a model cut free, with its forces, reactions and inertia
-from eomgen.results.bodies_cut_free.result import free_bodies as free_bodies
+from eomgen.results.bodies_cut_free import free_bodies as free_bodies
 
 # The model's parts and its degrees of freedom, by rank and by the counting formula
 from eomgen.results.check import check_document as check_document

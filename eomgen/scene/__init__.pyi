@@ -59,12 +59,6 @@ from eomgen.scene.making import scene_of_system as scene_of_system
 # A scene with more marks, each in the place that its role has
 from eomgen.scene.making import scene_with as scene_with
 
-# The strokes of a scene in the plane
-from eomgen.scene.plane_strokes import plane_drawing as plane_drawing
-
-# A state in numbers
-from eomgen.scene.scene import DrawnState as DrawnState
-
 # Something that is drawn
 from eomgen.scene.scene import Mark as Mark
 
@@ -74,17 +68,11 @@ from eomgen.scene.scene import Scene as Scene
 # Axes in which marks stand
 from eomgen.scene.scene import SceneFrame as SceneFrame
 
-# State at which the model starts
-from eomgen.scene.scene import drawn_start as drawn_start
-
-# The numbers of the scene's frame at a state
-from eomgen.scene.scene import frame_at as frame_at
-
 # The same along a motion
 from eomgen.scene.scene import frames_along as frames_along
 
-# The strokes of a scene in space
-from eomgen.scene.space_strokes import space_drawing as space_drawing
+# The strokes of a scene, in the plane or in space
+from eomgen.scene.space_strokes import drawing_of as drawing_of
 
 # The longest arrow, of the extent
 from eomgen.scene.strokes import ARROW as ARROW

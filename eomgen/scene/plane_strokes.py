@@ -11,16 +11,12 @@ from eomgen.model import ArcForm, LineForm, PolygonForm
 from eomgen.scene import forms
 from eomgen.scene.scene import Mark, plain_number
 from eomgen.scene.strokes import (
-    ARROW,
-    SYMBOL,
     DrawerTable,
-    Drawing,
     Drawn,
     Letter,
     PictureSizes,
     SceneNumbers,
     Stroke,
-    drawn_with,
 )
 from eomgen.scene.symbols import PLANE, TEETH
 from eomgen.symbolic.expression import Vector
@@ -32,13 +28,6 @@ ROUND = 73  # points of a circle
 LONGEST = 1.5  # of the extent, a length that is drawn
 NARROW = 1.5  # units: a dimension line that is not longer has no room for its heads
 LEAST = 0.03  # of an angle that is drawn [rad]
-
-
-def plane_drawing(
-    numbers: SceneNumbers, *, dimensions: bool = False, symbol: float = SYMBOL, arrow: float = ARROW
-) -> Drawing:
-    """The strokes of a scene in the plane."""
-    return drawn_with(TABLE, numbers, dimensions=dimensions, symbol=symbol, arrow=arrow)
 
 
 def _stroke(path: np.ndarray, mark: Mark, **look: bool) -> Stroke:

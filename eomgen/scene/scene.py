@@ -14,12 +14,11 @@ from typing import Any
 import numpy as np
 
 from eomgen.codegen import Program, compiled, program_in_motion, program_of
-from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, System
-from eomgen.mechanics.start import Start
 from eomgen.model import Form
 from eomgen.scene.symbols import symbols_used
+from eomgen.study import StateInNumbers
 from eomgen.symbolic.expression import Node, Pose, Scalar, Vector, symbols_of
 from eomgen.symbolic.numeric import FLOAT, evaluate
 
@@ -236,42 +235,10 @@ def scalars_of(form: Form) -> Iterator[Scalar]:
 
 
 # -------- instant ---------------------------------------------------------------------------------------------
-# Scene -> numbers: the frame at one state, and where a model stands before anything moves.
+# Scene -> numbers: the frame at one state.
 
 
-@dataclass(frozen=True)
-class DrawnState:
-    """A state in numbers.
-
-    Args:
-        x: coordinates then speeds.
-        p: parameters in the model's order.
-        assumed: the parameters without a value, drawn as 1.
-    """
-
-    t: float
-    x: np.ndarray
-    p: np.ndarray
-    assumed: tuple[str, ...] = ()
-
-
-def drawn_start(system: System) -> DrawnState:
-    """State at which the model starts; a parameter without a value is taken as 1, and constraints that then do not
-    close stay open."""
-    model, symbols = system.scope.model, system.symbols
-    known = model.exact_parameters()
-    assumed = {name: 1 for name in model.parameters if name not in known}
-    try:
-        values = Start.of(system, assumed).values
-    except DerivationError:
-        q, u = model.start_values(assumed)
-        values = {**q, **u}
-    x = [float(values[node.name]) for node in symbols.x]
-    p = [float(known.get(name, 1)) for name in symbols.parameters]
-    return DrawnState(0.0, np.array(x), np.array(p), tuple(assumed))
-
-
-def frame_at(scene: Scene, state: DrawnState) -> np.ndarray:
+def frame_at(scene: Scene, state: StateInNumbers) -> np.ndarray:
     """The numbers of the scene's frame at a state: slot i is that of `scene.values[i]`; nan where there is none."""
     found: np.ndarray = frames_along(scene, np.array([state.t]), state.x[None, :], state.p)[0]
     return found

@@ -17,7 +17,7 @@ from eomgen.model import (
     PrismForm,
     RevolutionForm,
 )
-from eomgen.scene import forms
+from eomgen.scene import forms, plane_strokes
 from eomgen.scene.plane_strokes import barrel
 from eomgen.scene.scene import Mark, plain_number
 from eomgen.scene.strokes import (
@@ -46,11 +46,12 @@ CUBE = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-
 SIDES = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
 
 
-def space_drawing(
+def drawing_of(
     numbers: SceneNumbers, *, dimensions: bool = False, symbol: float = SYMBOL, arrow: float = ARROW
 ) -> Drawing:
-    """The strokes of a scene in space."""
-    return drawn_with(TABLE, numbers, dimensions=dimensions, symbol=symbol, arrow=arrow)
+    """The strokes of a scene, in the plane or in space; arguments as of `drawn_with`."""
+    table = plane_strokes.TABLE if numbers.scene.plane else TABLE
+    return drawn_with(table, numbers, dimensions=dimensions, symbol=symbol, arrow=arrow)
 
 
 def _faces(corners: np.ndarray, mark: Mark, role: str = "", *, solid: bool = False) -> Stroke:

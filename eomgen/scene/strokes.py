@@ -17,7 +17,8 @@ import numpy as np
 
 from eomgen.frozen import dataclass
 from eomgen.model import Form
-from eomgen.scene.scene import Mark, Scene, is_moving, plain_number
+from eomgen.scene.scene import Mark, Scene, frame_at, is_moving, plain_number
+from eomgen.study import StateInNumbers
 from eomgen.symbolic.expression import Vector
 from eomgen.symbolic.numeric import tolerances
 
@@ -90,6 +91,11 @@ class SceneNumbers:
 
     scene: Scene
     frames: np.ndarray
+
+    @classmethod
+    def at(cls, scene: Scene, state: StateInNumbers) -> SceneNumbers:
+        """Numbers of one state, as a single frame."""
+        return cls(scene, frame_at(scene, state)[None, :])
 
     @property
     def size(self) -> int:

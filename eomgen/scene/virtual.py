@@ -26,9 +26,8 @@ from eomgen.model import UniformField
 from eomgen.scene.bodies import parameters_as_drawn
 from eomgen.scene.forms import ArrowForm, CoupleForm, SymbolForm
 from eomgen.scene.making import center_marks, scene_of_system
-from eomgen.scene.plane_strokes import plane_drawing
 from eomgen.scene.scene import Mark, Scene
-from eomgen.scene.space_strokes import space_drawing
+from eomgen.scene.space_strokes import drawing_of
 from eomgen.scene.strokes import SceneNumbers
 from eomgen.symbolic.expression import Matrix, Node, Pose, Scalar, Vector, is_zero
 from eomgen.symbolic.numeric import FLOAT, evaluate, tolerances
@@ -41,7 +40,7 @@ SHARE = "(share of the virtual displacement)"
 
 def swing_of(numbers: SceneNumbers, step: float) -> float:
     """Size of the displacement at which the body that moves most moves by SWING of the picture's extent."""
-    drawing = (plane_drawing if numbers.scene.plane else space_drawing)(numbers)
+    drawing = drawing_of(numbers)
     solid = [s.path.reshape(numbers.size, -1) for s in drawing.strokes if s.role in SOLID]
     moved = max((float(np.nanmax(np.abs(path - path[0]))) for path in solid if path.size), default=0.0)
     return SWING * drawing.sizes.extent * step / moved if moved > 0 else 0.0

@@ -9,6 +9,15 @@ from eomgen.study.checked import LoopStart as LoopStart
 # Checks a model: degrees of freedom, redundancy, closure of loops, cautions
 from eomgen.study.checked import checked_model as checked_model
 
+# The bodies of a model at one instant, cut free
+from eomgen.study.cut_bodies import CutState as CutState
+
+# A force or couple on a body that is cut free, in numbers
+from eomgen.study.cut_bodies import NumberedForce as NumberedForce
+
+# The bodies of a model at its start, where an equation is first met, or in equilibrium
+from eomgen.study.cut_bodies import cut_state as cut_state
+
 # The entry of a derivation in the cache; None where this package is not made of files
 from eomgen.study.kept_derivations import cached_derivation as cached_derivation
 
@@ -20,6 +29,9 @@ from eomgen.study.motion import MotionFromStart as MotionFromStart
 
 # State of a motion at one instant, exact and in numbers
 from eomgen.study.motion import StateAtInstant as StateAtInstant
+
+# A state as it is drawn: t, x and the parameters, with what is assumed of them
+from eomgen.study.motion import StateInNumbers as StateInNumbers
 
 # Efforts that move a system with given accelerations: A tau + J^T lam = M a + c - Q
 from eomgen.study.programs import InverseDynamics as InverseDynamics

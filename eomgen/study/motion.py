@@ -7,11 +7,11 @@ phase is followed in numbers; the instants between are then sought in closed for
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from random import Random
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import holds_identically
 from eomgen.mechanics.dynamics import Extent, system_of
 from eomgen.mechanics.kinematics import Located
-from eomgen.mechanics.start import ExactStart
+from eomgen.mechanics.start import ExactStart, Start
 from eomgen.model import Model, WrittenEquation
 from eomgen.simulation import AUTO, PhaseRun, Trajectory, integrate, nearness_of, projection_of
 from eomgen.study.study import Study, study_at_rest, study_of
@@ -36,6 +36,44 @@ from eomgen.mechanics.integrals import ClosedInstant
 from eomgen.simulation import FirstTime
 from eomgen.symbolic.expression import State
 from eomgen.symbolic.numeric import transplanted
+
+
+@dataclass(frozen=True)
+class StateInNumbers:
+    """A state as it is drawn.
+
+    Args:
+        x: coordinates, speeds, then further states.
+        p: parameters in the model's order.
+        assumed: the parameters without a value, taken as 1.
+    """
+
+    t: float
+    x: np.ndarray
+    p: np.ndarray
+    assumed: tuple[str, ...] = ()
+
+    @classmethod
+    def of(cls, system: System, numbers: Mapping[Node, Any], assumed: Iterable[str] = ()) -> StateInNumbers:
+        """The state of which these are the numbers; without one t and x are 0, parameters 1."""
+        symbols = system.symbols
+        x = [float(numbers.get(node, 0.0)) for node in symbols.x]
+        p = [float(numbers.get(node, 1.0)) for node in symbols.parameters.values()]
+        return cls(float(numbers.get(symbols.t, 0.0)), np.array(x), np.array(p), tuple(assumed))
+
+    @classmethod
+    def at_start(cls, system: System) -> StateInNumbers:
+        """State at which a model starts; constraints that do not close with what is assumed stay open."""
+        model, symbols = system.scope.model, system.symbols
+        known = model.exact_parameters()
+        assumed = {name: 1 for name in model.parameters if name not in known}
+        try:
+            values = Start.of(system, assumed).values
+        except DerivationError:
+            q, u = model.start_values(assumed)
+            values = {**q, **u}
+        begun = {x: values[x.name] for x in symbols.x}
+        return cls.of(system, {**begun, **{symbols.parameters[name]: value for name, value in known.items()}}, assumed)
 
 
 @dataclass(frozen=True)

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from functools import cached_property
-from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -26,34 +24,26 @@ from eomgen.documents import (
     prose,
 )
 from eomgen.frozen import dataclass
-from eomgen.mechanics.free_bodies import Balance, CutForce, ForceKind, forces_on_bodies, named_reactions
+from eomgen.mechanics.free_bodies import ForceKind
 from eomgen.model import AtRest, ModelOrPath, Values, WrittenEquation, equation_in
 from eomgen.proof import Certificate, ReportedForce, certify, cuts_reported
 from eomgen.resources import doing
 from eomgen.results.at_rest.steps import letter_of_load, letter_of_reaction
-from eomgen.results.bodies_cut_free.cut_state import CutState, cut_state
 from eomgen.scene import (
     ARROW,
-    Drawing,
     DrawnArrow,
-    Scene,
     SceneNumbers,
-    frame_at,
+    drawing_of,
     is_freer_outward,
     never_short,
-    plane_drawing,
     scene_of_cut_body,
     scene_of_system,
-    space_drawing,
 )
-from eomgen.study import model_to_study
-from eomgen.symbolic.expression import Scalar, Vector, is_zero
-from eomgen.symbolic.numeric import tolerances
+from eomgen.study import CutState, NumberedForce, cut_state, model_to_study
+from eomgen.symbolic.expression import Vector, is_zero
 from eomgen.symbolic.print import Notation, Setter, Symbol, text_size, to_text
 
-STAYING = (ForceKind.REACTION, ForceKind.SPRING, ForceKind.DAMPER, ForceKind.DRIVE)  # listed where they are 0
 NEWTON, NEWTON_METER = "N", "N*m"
-NOISE = 10 * tolerances.ROUNDING  # of the largest, which rounding leaves of a 0
 
 
 @dataclass(frozen=True)
@@ -116,26 +106,17 @@ class FreeBodies(Result):
     def bodies(self) -> dict[str, FreeBody]:
         """Each body by its name, in the order of the model, with what acts on it."""
         found: dict[str, list[BodyForce]] = {link.name: [] for link in self.state.system.motion.links}
-        for each in self.numbered:
+        for each in self.state.forces:
             found[each.push.body].append(self._force(each))
         return {name: FreeBody(name, tuple(forces)) for name, forces in found.items() if forces}
-
-    @cached_property
-    def numbered(self) -> tuple[NumberedForce, ...]:
-        """All that acts, in numbers, at the parameters as they are drawn; what is nothing there is left out."""
-        made = _with_resultants(numbered_forces(self.state, forces_on_bodies(self.state.balance)))
-        sizes = (abs(each.value) for each in made if each.value is not None)
-        noise = NOISE * max(sizes, default=0.0)
-        quiet = [replace(e, value=0.0) if e.value is not None and abs(e.value) <= noise else e for e in made]
-        return tuple(each for each in quiet if each.value != 0 or each.stays)
 
     def _force(self, each: NumberedForce) -> BodyForce:
         push, count = each.push, 2 if self.state.system.scope.model.space == "plane" else 3
         direction = each.direction if push.turns else each.direction[:count]
         value = None if self.state.drawn.assumed else each.value
         unit = NEWTON_METER if push.turns else NEWTON
-        letter = letter_of_force(self.state.balance, push)
-        at, way = _plain(each.at[:count]), _plain(direction)
+        letter = letter_of_force(self.state, each)
+        at, way = tuple(each.at[:count].tolist()), tuple(direction.tolist())
         return BodyForce(push.name, at, way, value, push.kind, unit, letter, push.has_sense)
 
     @property
@@ -152,7 +133,7 @@ class FreeBodies(Result):
         state = self.state
         equations = None if state.rests else state.study.equations
         base = Certificate(()) if equations is None else certify(equations)
-        reported = [each.reported for each in self.numbered]
+        reported = [_reported(each) for each in state.forces]
         return base + cuts_reported(state.system, equations, state.begun_with_unknowns, reported)
 
     @cached_property
@@ -175,6 +156,13 @@ class FreeBodies(Result):
             "assumed": list(self.state.drawn.assumed),
             "bodies": {name: [_entry(force) for force in body.forces] for name, body in self.bodies.items()},
         }
+
+
+def _reported(each: NumberedForce) -> ReportedForce:
+    """A force as the proof reads it."""
+    push, vector = each.push, None if each.value is None else each.value * each.direction
+    force, couple = (np.zeros(3), vector) if push.turns else (vector, np.zeros(3))
+    return ReportedForce(push.body, push.name, push.kind, each.at, force, couple)
 
 
 @doing("the free bodies")
@@ -200,79 +188,6 @@ def free_bodies(
     found = FreeBodies(cut_state(model, at))
     _ = found.bodies  # what cannot be cut free is refused here
     return found
-
-
-# -------- in numbers ------------------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class NumberedForce:
-    """A push in numbers, ground axes.
-
-    Args:
-        at: 3 [m].
-        direction: unit vector, 3; zeros where there is none.
-        value: along it; None where it has no single value.
-    """
-
-    push: CutForce
-    at: np.ndarray
-    direction: np.ndarray
-    value: float | None
-
-    @property
-    def stays(self) -> bool:
-        """True if it is listed where it is 0: a reaction, a spring, a damper."""
-        return self.push.kind in STAYING and bool(np.any(self.direction))
-
-    @property
-    def reported(self) -> ReportedForce:
-        """The force as the proof reads it."""
-        push, vector = self.push, None if self.value is None else self.value * self.direction
-        force, couple = (np.zeros(3), vector) if push.turns else (vector, np.zeros(3))
-        return ReportedForce(push.body, push.name, push.kind, self.at, force, couple)
-
-
-def numbered_forces(state: CutState, pushes: Sequence[CutForce]) -> list[NumberedForce]:
-    """Pushes at a state."""
-    flat: list[Scalar] = []
-    for push in pushes:
-        flat += [*push.at, *push.direction, *(push.along or Vector.ZERO), push.given, *push.shares.values()]
-    numbers = iter(state.numbers(flat))
-    return [_numbered(push, numbers, state.components) for push in pushes]
-
-
-def _numbered(push: CutForce, numbers: Iterator[float], components: Sequence[float | None]) -> NumberedForce:
-    at, vector, along = (np.array(list(islice(numbers, 3))) for _ in range(3))
-    value: float | None = next(numbers)
-    for j, share in zip(push.shares, islice(numbers, len(push.shares)), strict=True):
-        known = components[j]
-        value = None if value is None or known is None else value + share * known
-    line = along if np.any(along) else vector
-    length = float(np.linalg.norm(line))
-    unit = line / length if length > 0 and math.isfinite(length) else np.zeros(3)
-    size = float(vector @ unit)
-    value = None if value is None or not math.isfinite(value * size) else value * size
-    return NumberedForce(push, at, unit, value)
-
-
-def _with_resultants(pushes: Sequence[NumberedForce]) -> list[NumberedForce]:
-    """The pushes, with one force for the two that replace a load along a line, where these have one direction."""
-    found: list[NumberedForce] = []
-    for each in pushes:
-        twin = found[-1] if found and each.push.spread and found[-1].push.spread else None
-        if twin is not None and (twin.push.name, twin.push.body) == (each.push.name, each.push.body):
-            a, b = twin.value or 0.0, each.value or 0.0
-            if a + b > 0 and min(a, b) >= 0 and np.allclose(twin.direction, each.direction, atol=tolerances.COMPUTED):
-                found[-1] = replace(twin, at=(a * twin.at + b * each.at) / (a + b), value=a + b)
-                continue
-        found.append(each)
-    return found
-
-
-def _plain(numbers: np.ndarray) -> tuple[float, ...]:
-    """Numbers without what rounding leaves."""
-    return tuple(0.0 if abs(x) < NOISE else float(x) for x in numbers)
 
 
 # -------- as text ---------------------------------------------------------------------------------------------
@@ -319,7 +234,13 @@ SHORT = 16  # characters of a formula that stands for the name of a load
 def free_bodies_picture(state: CutState, bodies: Mapping[str, FreeBody]) -> Picture:
     """A panel for each body."""
     scene = scene_of_system(state.system)
-    drawings = [_drawing(state, scene, body) for body in bodies.values()]
+    drawings = []
+    for body in bodies.values():
+        bare = drawing_of(SceneNumbers.at(scene_of_cut_body(scene, body.name), state.drawn), symbol=SYMBOL)
+        lines = [s.path[0] for s in bare.strokes if s.of == body.name] if scene.plane else []
+        arrows = _arrows(body.forces, lines, bare.sizes.extent)
+        whole = scene_of_cut_body(scene, body.name, arrows)
+        drawings.append(drawing_of(SceneNumbers.at(whole, state.drawn), symbol=SYMBOL))
     columns = max(1, min(COLUMNS, len(drawings)))
     rows = max(1, math.ceil(len(drawings) / columns))
     tall = [float(np.clip(page_shape(each), FLATTEST, TALLEST)) for each in drawings]
@@ -338,19 +259,6 @@ def free_bodies_picture(state: CutState, bodies: Mapping[str, FreeBody]) -> Pict
     return Picture((SIDE * columns, sum(SIDE * height + TITLE for height in heights) + TITLE), fill, scene.name)
 
 
-def _drawing(state: CutState, scene: Scene, body: FreeBody) -> Drawing:
-    """A body with the arrows of its forces."""
-    bare = _drawn(scene_of_cut_body(scene, body.name), state)
-    lines = [s.path[0] for s in bare.strokes if s.of == body.name] if scene.plane else []
-    arrows = _arrows(body.forces, lines, bare.sizes.extent)
-    return _drawn(scene_of_cut_body(scene, body.name, arrows), state)
-
-
-def _drawn(scene: Scene, state: CutState) -> Drawing:
-    numbers = SceneNumbers(scene, frame_at(scene, state.drawn)[None, :])
-    return (plane_drawing if scene.plane else space_drawing)(numbers, symbol=SYMBOL)
-
-
 def _arrows(forces: Sequence[BodyForce], lines: Sequence[np.ndarray], extent: float) -> Iterator[DrawnArrow]:
     """The forces, along the directions in which their letters are positive."""
     largest = max((abs(force.value or 0.0) for force in forces if not force.turns), default=0.0) or 1.0
@@ -367,25 +275,25 @@ def _arrows(forces: Sequence[BodyForce], lines: Sequence[np.ndarray], extent: fl
 # -------- letters ---------------------------------------------------------------------------------------------
 
 
-def letter_of_force(balance: Balance, push: CutForce) -> str:
+def letter_of_force(state: CutState, numbered: NumberedForce) -> str:
     """The letter of a force in LaTeX: of a reaction as derivations have it, of a load its formula where it is short."""
-    notation = notation_of(balance.system.scope.model)
+    push, notation = numbered.push, notation_of(state.system.scope.model)
     if push.kind == ForceKind.INERTIA:
         return r"-I\,\alpha" if push.turns else r"-m\,a"
     if push.shares:
-        named = next((each for each in named_reactions(balance) if each.name == push.name), None)
-        own = None if named is None else own_symbol(balance, named)
+        named = next((each for each in state.study.named_reactions if each.name == push.name), None)
+        own = None if named is None else own_symbol(state.balance, named)
         return own.tex if own is not None else notation.latex(letter_of_reaction(push.name))
     if push.kind in (ForceKind.WEIGHT, ForceKind.APPLIED):
         name = "G" if push.kind == ForceKind.WEIGHT else letter_of_load(push.name, notation)
-        return _formula(push, notation) or name
+        return _formula(push.direction, notation) or name
     owner = push.name.partition("(")[2].rstrip(")") or push.name
     return notation.latex(f"{'M' if push.turns else 'F'}_{owner}")
 
 
-def _formula(push: CutForce, notation: Notation) -> str:
+def _formula(load: Vector, notation: Notation) -> str:
     """The size of a load along an axis, m g; "" where it is long, or along none."""
-    parts = [x for x in push.direction if not is_zero(x)]
+    parts = [x for x in load if not is_zero(x)]
     if len(parts) != 1:
         return ""
     (x,) = parts

@@ -1,1 +1,0 @@
-"""Bodies cut free, with all their forces, as data and drawn."""
