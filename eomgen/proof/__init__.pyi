@@ -62,12 +62,6 @@ from eomgen.proof.drawn_panels import panels_of as panels_of
 # A force, a couple or a line load as it is drawn
 from eomgen.proof.drawn_structure import ReportedPush as ReportedPush
 
-# Check of every panel of components of a beam in space
-from eomgen.proof.drawn_structure import space_sections_drawn as space_sections_drawn
-
-# Check of all arrows of a picture together
-from eomgen.proof.drawn_structure import structure_drawn as structure_drawn
-
 # Check that the values set in each run are of their ranges and laws
 from eomgen.proof.drawn_values import drawn_otherwise as drawn_otherwise
 
@@ -185,11 +179,8 @@ from eomgen.proof.states import consistent_states as consistent_states
 # Check the two ways, every body's balance, section forces from the other end, influence lines by loads
 from eomgen.proof.structure import certify_structure as certify_structure
 
-# Check of every panel titled N, V or M of a body, or influence line
-from eomgen.proof.structure import diagrams_drawn as diagrams_drawn
-
-# Every symbol with 50 digits
-from eomgen.proof.structure import state_of as state_of
+# Checks of a picture of a structure: its diagrams and influence line by their panels, the arrows together
+from eomgen.proof.structure import structure_pictured as structure_pictured
 
 # An equation with its verdict
 from eomgen.proof.verdicts import JudgedEquation as JudgedEquation

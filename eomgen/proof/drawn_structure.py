@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.statics import SPACE_KINDS, MemberLoads, SectionsInSpace, StaticReactions, triad
+from eomgen.mechanics.statics import SectionForces
 from eomgen.proof.check import Check, Tally
 from eomgen.proof.drawn_panels import DrawnPanel, said_of
 from eomgen.symbolic.expression import Node, Scalar
@@ -116,10 +116,7 @@ HOW_SECTIONS = "curves and numbers of the picture, from the other end"
 
 
 def space_sections_drawn(
-    found: StaticReactions,
-    values: Mapping[Node, Any],
-    sections: Mapping[str, SectionsInSpace],
-    panels: Iterable[DrawnPanel],
+    values: Mapping[Node, Any], sections: Mapping[str, SectionForces], panels: Iterable[DrawnPanel]
 ) -> Iterator[Check]:
     """Check of every panel of components of a beam in space.
 
@@ -131,17 +128,16 @@ def space_sections_drawn(
         what, unit = said_of(panel.y)
         kinds, _, body = what.partition(" of ")
         names = kinds.split(", ")
-        if body in sections and set(names) <= set(SPACE_KINDS):
-            beam = _Beam(found, values, sections[body])
+        if body in sections and set(names) <= set(sections[body].kinds):
+            beam = _Beam(values, sections[body])
             tally.add(what, partial(beam.wrong, names, panel, PREFIXES[unit.partition("N")[0]]))
     yield from tally.checks()
 
 
 @dataclass(frozen=True)
 class _Beam:
-    found: StaticReactions
     values: Mapping[Node, Any]
-    sections: SectionsInSpace
+    sections: SectionForces
 
     def numbers(self, v: Sequence[Scalar]) -> np.ndarray:
         return np.array([float(x) for x in evaluate(tuple(v), self.values, fifty_digits())])
@@ -152,15 +148,13 @@ class _Beam:
     @cached_property
     def _actions(self) -> list[tuple[float, np.ndarray, np.ndarray, np.ndarray]]:
         """(x, place, force, couple) of all that acts at places."""
-        axis, loads = self.sections.axis, self._loads
-        return [
-            (self._x(axis.distance(p)), self.numbers(p), self.numbers(f), self.numbers(c)) for p, f, c in loads.actions
-        ]
+        axis, acting = self.sections.axis, self.sections.loads.actions
+        return [(self._x(axis.distance(p)), self.numbers(p), self.numbers(f), self.numbers(c)) for p, f, c in acting]
 
     @cached_property
-    def _loads(self) -> MemberLoads:
-        axis = self.sections.axis
-        return MemberLoads(self.found.balance, axis.body, axis.sizes)
+    def _spreads(self) -> list[tuple[Any, ...]]:
+        """The loads per length, (start, end, at the start, at the end) each."""
+        return list(self.sections.loads.spreads)
 
     def _x(self, x: Scalar | None) -> float:
         return 0.0 if x is None else self.one(x)
@@ -171,7 +165,7 @@ class _Beam:
         for at, place, force, couple in self._actions:
             if at > x:
                 R, T = R + force, T + couple + np.cross(place - section, force)
-        for start, end, at_start, at_end in self._loads.spreads:
+        for start, end, at_start, at_end in self._spreads:
             a, b = (self._x(self.sections.axis.distance(place)) for place in (start, end))
             p, q, f, g = map(self.numbers, (start, end, at_start, at_end))
             if a > b:
@@ -195,7 +189,7 @@ class _Beam:
             if abs(x[0] - start) + abs(x[-1] - end) > tolerances.SAME_PLACE * (1 + abs(end)):
                 return f"drawn from {x[0]:.6g} to {x[-1]:.6g}, not from {start:.6g} to {end:.6g}"
             origin, x0 = self.numbers(piece.leg.start), self.one(piece.leg.x)
-            axes = [self.numbers(e) for e in triad(piece.leg, self.sections.axis.sizes)]
+            axes = [self.numbers(e) for e in self.sections.triad(piece)]
             near = tolerances.COMPUTED * (end - start)
             for at, value in zip(x, y, strict=True):
                 inside = min(max(at, start + near), end - near)

@@ -17,7 +17,6 @@ import numpy as np
 
 from eomgen.errors import ExpressionError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.free_bodies import Axes
 from eomgen.mechanics.kinematics import SystemScene
 from eomgen.mechanics.statics import SectionForces, StaticReaction, StaticReactions
 from eomgen.proof.at_a_state import balanced_least
@@ -68,8 +67,7 @@ def _wrong(forces: SectionForces, reported: ReportedSections, near: Mapping[str,
         ends = (("from", start), ("to", end))
         wrong = [differing(values.of(row[name]), right, tolerances.CARRIED) for name, right in ends]
         x, h = start + (end - start) * 0.37, (end - start) * 0.25
-        polynomials = {"N": piece.N, "V": piece.V, "M": piece.M}
-        for name, coefficients in polynomials.items():
+        for name, coefficients in zip("NVM", piece.series.values(), strict=True):
             right = sum(values.of(c) * (x - start) ** k for k, c in enumerate(coefficients))
             size = sum(abs(values.of(c) * (x - start) ** k) for k, c in enumerate(coefficients))
             at = values.of(row[name], x)
@@ -310,9 +308,9 @@ class _Works:
     @cached_property
     def centers(self) -> dict[str, np.ndarray]:
         """Mass centres, ground axes."""
-        motion = self.found.system.motion
-        pairs = zip(motion.links, Axes(motion).masses, strict=True)
-        return {link.name: self.vector(link.pose.point(mass.com)) for link, mass in pairs}
+        system = self.found.system
+        coms = ((link, system.scope.mass_properties(link.name).com) for link in system.motion.links)
+        return {link.name: self.vector(link.pose.point(com)) for link, com in coms}
 
     def place(self, words: str) -> tuple[str, np.ndarray] | None:
         """(body, place) of "beam.tip", "mass centre of beam", "T.n2"; None of other words."""

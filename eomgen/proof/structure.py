@@ -13,36 +13,20 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property, partial
-from itertools import combinations, pairwise
+from itertools import chain, combinations, pairwise
 from random import Random
 from typing import Any
 
 import numpy as np
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.free_bodies import (
-    Axes,
-    RigidBlock,
-    VelocityPlan,
-    imbalance,
-    named_reactions,
-)
-from eomgen.mechanics.statics import (
-    KINDS,
-    InfluenceLine,
-    InfluenceSpan,
-    MemberAxis,
-    MemberLoads,
-    SectionForces,
-    SectionPiece,
-    StaticReactions,
-    StaticSum,
-    place_of,
-)
+from eomgen.mechanics.free_bodies import imbalance, named_reactions
+from eomgen.mechanics.statics import InfluenceLine, SectionForces, SectionPiece, StaticReactions
 from eomgen.proof.at_a_state import balanced_least
 from eomgen.proof.check import Certificate, Check, Tally, attempted, checked, first_wrong
 from eomgen.proof.declared_loads import STRUNG, acting_otherwise, strung_otherwise, threads_of
 from eomgen.proof.drawn_panels import DrawnCurve, DrawnPanel, said_of
+from eomgen.proof.drawn_structure import ReportedPush, space_sections_drawn, structure_drawn
 from eomgen.proof.free_bodies import named_otherwise
 from eomgen.proof.masses import other_data
 from eomgen.proof.posed_model import apart, meetings_of
@@ -56,7 +40,6 @@ PARTS = tuple((2 * k + 1) / 16 for k in range(8))  # of a piece, at which the si
 QUARTERS = (0.25, 0.75)  # of a straight piece, at which straight lines are compared
 DRAWN = "drawn N, V, M and influence lines are right"
 HOW_DRAWN = "curves and numbers of the picture, from the other end and by unit loads"
-LETTERS = dict(zip("NVM", KINDS, strict=True))
 PREFIXES = {"": 1.0, "m": 1e-3, "k": 1e3, "M": 1e6, "G": 1e9}  # of N and N m
 
 
@@ -107,7 +90,7 @@ def _structure_checks(
         yield attempted(STRUNG, "50 digits", lambda: strung_otherwise(system, proof.state))
     if found.sums and not found.structure.unknowns:
         name = "stated sums have one value, whatever the self-stress"
-        yield checked(name, first_wrong(map(proof.wrong_sum, found.sums)), IN_NUMBERS)
+        yield checked(name, first_wrong(proof.wrong_sums()), IN_NUMBERS)
     if system.loads.applied:
         name = "applied loads act as their fields declare"
         yield attempted(name, "50 digits", lambda: acting_otherwise(system, proof.state))
@@ -126,7 +109,27 @@ def _structure_checks(
         yield checked("the influence line is what unit loads give at places of it", wrong, IN_NUMBERS)
 
 
-def diagrams_drawn(
+def structure_pictured(
+    found: StaticReactions,
+    sections: Mapping[str, SectionForces],
+    influence: InfluenceLine | None,
+    panels: Sequence[DrawnPanel],
+    pushes: Iterable[ReportedPush],
+) -> Iterator[Check]:
+    """Checks of a picture of a structure: its diagrams and influence line by their panels, the arrows together.
+
+    Args:
+        sections: the section forces by body.
+        pushes: all that is drawn to act on the structure; () where sizes are not all known.
+    """
+    if found.system.scope.model.space == "plane":
+        yield from _diagrams_drawn(found, sections, influence, panels)
+    else:
+        yield from space_sections_drawn(state_of(found), sections, panels)
+    yield from structure_drawn(pushes)
+
+
+def _diagrams_drawn(
     found: StaticReactions,
     sections: Mapping[str, SectionForces],
     influence: InfluenceLine | None,
@@ -138,7 +141,7 @@ def diagrams_drawn(
     for panel in panels:
         what, unit = said_of(panel.y)
         letter, _, body = what.partition(" of ")
-        if letter in LETTERS and body in sections:
+        if letter in ("N", "V", "M") and body in sections:
             drawn.add(body)
             tally.add(what, partial(_Diagram(proof, sections[body], letter, panel, unit).wrong))
         elif influence is not None and panel.y == influence.name:
@@ -194,17 +197,17 @@ class _Proof:
     def _balancing(self) -> tuple[np.ndarray, np.ndarray]:
         return balanced_least(self.found.balance.balance, self.state)
 
-    def wrong_sum(self, each: StaticSum) -> str:
-        """Message if a sum has another value by the reactions of least norm, or changes with a self-stress; ""."""
+    def wrong_sums(self) -> Iterator[str]:
+        """Sums that have another value by the reactions of least norm, or change with a self-stress."""
         least, added = self._balancing
-        factors = np.zeros(len(least))
-        factors[list(each.combination)] = self.numbers(tuple(each.combination.values()))
-        size = np.abs(factors) @ np.abs(least) + np.abs(factors).max() * np.abs(least).max(initial=0.0)
-        off = abs(factors @ least - self.one(each.value)) > tolerances.COMPUTED * size
-        names = " + ".join(self.found.structure.names[j] for j in each.combination)
-        if off or np.any(np.abs(factors @ added) > tolerances.COMPUTED * np.abs(factors).sum()):
-            return f"the sum of {names}"
-        return ""
+        for each in self.found.sums:
+            factors = np.zeros(len(least))
+            factors[list(each.combination)] = self.numbers(tuple(each.combination.values()))
+            size = np.abs(factors) @ np.abs(least) + np.abs(factors).max() * np.abs(least).max(initial=0.0)
+            off = abs(factors @ least - self.one(each.value)) > tolerances.COMPUTED * size
+            names = " + ".join(self.found.structure.names[j] for j in each.combination)
+            if off or np.any(np.abs(factors @ added) > tolerances.COMPUTED * np.abs(factors).sum()):
+                yield f"the sum of {names}"
 
     def one(self, x: Scalar) -> float:
         return float(self.numbers((x,))[0])
@@ -219,21 +222,21 @@ class _Proof:
         """Loads along a body, in numbers."""
         body = forces.axis.body
         if body not in self._loads:
-            loads = MemberLoads(self.found.balance, body, forces.sizes)
+            loads = forces.loads
             actions = [
-                (self._x(forces.axis, place), self.numbers(place), self.numbers(force), self.one(couple[2]))
+                (self._x(forces, place), self.numbers(place), self.numbers(force), self.one(couple[2]))
                 for place, force, couple in loads.actions
             ]
             spreads = []
             for start, end, at_start, at_end in loads.spreads:
-                ends = [self._x(forces.axis, place) for place in (start, end)]
+                ends = [self._x(forces, place) for place in (start, end)]
                 spreads.append((ends, *map(self.numbers, (start, end, at_start, at_end))))
             self._loads[body] = _Along(tuple(actions), tuple(spreads))
         return self._loads[body]
 
-    def _x(self, axis: MemberAxis, place: Vector) -> float:
+    def _x(self, forces: SectionForces, place: Vector) -> float:
         """Distance of a place along the axis of its body; 0 off the axis, where no section forces act."""
-        x = axis.distance(place)
+        x = forces.axis.distance(place)
         return 0.0 if x is None else self.one(x)
 
     def wrong_from_behind(self, forces: SectionForces) -> str:
@@ -284,7 +287,10 @@ class _Proof:
         """(a, b) between which V surely changes its sign within a piece, of pieces whose place is known."""
         sizes = forces.sizes
         for piece in forces.pieces:
-            if not set(symbols_of((piece.start, piece.end, *piece.V))) <= sizes.values.keys() | sizes.at.keys():
+            if (
+                not set(symbols_of((piece.start, piece.end, *piece.series["shear_force"])))
+                <= sizes.values.keys() | sizes.at.keys()
+            ):
                 continue
             start, end = self.one(piece.start), self.one(piece.end)
             places = [start + part * (end - start) for part in PARTS]
@@ -301,7 +307,7 @@ class _Proof:
         along = self.along(forces)
         for piece in forces.pieces:
             start, end = self.one(piece.start), self.one(piece.end)
-            N, V, M = (self.numbers(piece.coefficients(kind))[::-1] for kind in KINDS)
+            N, V, M = (self.numbers(series)[::-1] for series in piece.series.values())
             t, n = self.numbers(piece.leg.along), self.numbers(piece.leg.left)
             for part in QUARTERS:
                 s = part * (end - start)
@@ -323,11 +329,12 @@ class _Proof:
         plans = [(each.name, each.work.plan) for each in self.found.reactions if each.work is not None]
         for name, plan in plans[:: 1 + (len(plans) - 1) // MOST_PLANS]:
             blocks = plan.blocks
-            fields = [np.array(self._at(plan, (*block.spin, *block.velocity))) for block in blocks]
+            fields = [np.array(plan.numbers((*block.spin, *block.velocity)), float) for block in blocks]
             for block, field in zip(blocks, fields, strict=True):
-                for part, places in self._ends(plan, block):
+                for part, places in self._ends(block.bodies, block.members):
                     for place in places:
-                        r, v = np.split(np.array(self._at(plan, (*plan.position(place), *plan.raw_velocity(place)))), 2)
+                        both = plan.numbers((*plan.position(place), *plan.raw_velocity(place)))
+                        r, v = np.split(np.array(both, float), 2)
                         if abs(field[3:] + np.cross(field[:3], r) - v).max() > tolerances.COMPUTED * (1 + abs(v).max()):
                             return f"{part} does not move with its block, {name} released"
             for one, other in combinations([f for f, b in zip(fields, blocks, strict=True) if not b.nodes], 2):
@@ -335,13 +342,12 @@ class _Proof:
                     return f"two blocks move alike, {name} released"
         return "" if plans else None
 
-    def _ends(self, plan: VelocityPlan, block: RigidBlock) -> Iterator[tuple[str, list[tuple[str, Vector]]]]:
-        ends = {(truss, member): pair for truss, member, pair in plan.system.scope.model.truss_members}
-        yield from ((body, [(body, Vector.ZERO), (body, Vector((1, 2, 0)))]) for body in block.bodies)
-        yield from ((member[1], [(node, Vector.ZERO) for node in ends[member]]) for member in block.members)
-
-    def _at(self, plan: VelocityPlan, scalars: Sequence[Scalar]) -> list[float]:
-        return [float(x) for x in plan.numbers(scalars)]
+    def _ends(
+        self, bodies: Iterable[str], members: Iterable[tuple[str, str]]
+    ) -> Iterator[tuple[str, list[tuple[str, Vector]]]]:
+        ends = {(truss, member): pair for truss, member, pair in self.found.system.scope.model.truss_members}
+        yield from ((body, [(body, Vector.ZERO), (body, Vector((1, 2, 0)))]) for body in bodies)
+        yield from ((member[1], [(node, Vector.ZERO) for node in ends[member]]) for member in members)
 
     # -- influence lines -------------------------------------------------------------------------------------
 
@@ -349,7 +355,7 @@ class _Proof:
         for span in line.spans:
             ends = [self.numbers(place) for place in (span.start, span.end)]
             stated = [self.one(x) for x in (span.at_start, span.at_end)]
-            for part, body in self._stops(span):
+            for part, body in self._stops(span.name):
                 place = ends[0] + part * (ends[1] - ends[0])
                 value = self._by_load(line, body, place)
                 expected = stated[0] + part * (stated[1] - stated[0])
@@ -357,12 +363,12 @@ class _Proof:
                     return f"at ({place[0]:.6g}, {place[1]:.6g}): {expected:.10g} against {value:.10g}"
         return ""
 
-    def _stops(self, span: InfluenceSpan) -> Iterator[tuple[float, str]]:
-        """(part of the span, body or node that takes the load there)."""
-        if span.name in self.found.system.motion.index:
-            yield from ((part, span.name) for part in QUARTERS)
+    def _stops(self, span: str) -> Iterator[tuple[float, str]]:
+        """(part of a span, body or node that takes the load there), by its name."""
+        if span in self.found.system.motion.index:
+            yield from ((part, span) for part in QUARTERS)
             return
-        first, _, last = span.name.rpartition("-")
+        first, _, last = span.rpartition("-")
         yield from ((0.0, first), (1.0, last if "." in last else f"{first.partition('.')[0]}.{last}"))
 
     def _by_load(self, line: InfluenceLine, body: str, place: np.ndarray) -> float:
@@ -390,7 +396,7 @@ class _Proof:
             x, y = curve.places[1:-1].T
             if _far((x[0], x[-1]), due, way) or np.any(curve.places[[0, -1], 1]):
                 return f"{span.name} is drawn from {x[0]:.6g} to {x[-1]:.6g}, not from {due[0]:.6g} to {due[1]:.6g}"
-            for part, body in self._stops(span):
+            for part, body in self._stops(span.name):
                 value, found = self._by_load(line, body, a + part * (b - a)), y[0] + part * (y[-1] - y[0])
                 if abs(value - found) > tolerances.CARRIED * (1 + abs(value)):
                     return f"in {span.name}: {found:.6g} for {value:.6g}"
@@ -398,9 +404,9 @@ class _Proof:
 
     @cached_property
     def _centers(self) -> list[np.ndarray]:
-        motion = self.found.system.motion
-        masses = Axes(motion).masses
-        return [self.numbers(link.pose.point(mass.com)) for link, mass in zip(motion.links, masses, strict=True)]
+        system = self.found.system
+        coms = ((link.pose, system.scope.mass_properties(link.name).com) for link in system.motion.links)
+        return [self.numbers(pose.point(com)) for pose, com in coms]
 
     @cached_property
     def _G(self) -> np.ndarray:
@@ -427,7 +433,9 @@ class _Proof:
         R, T = np.zeros(3), 0.0
         for j, (owner, effects) in enumerate(self.found.structure.pushes):
             for e in effects:
-                place = place_of(self.found.structure.components, e, owner)
+                mine = (c.effects for c in self.found.structure.components if c.owner == owner)
+                places = (each.place for each in (e, *chain(*mine)) if each.link == e.link)
+                place = next((place for place in places if place is not None), None)
                 s = None if place is None else cut.axis.distance(place)
                 if e.link != i or place is None or s is None or not cut.before(s):
                     continue

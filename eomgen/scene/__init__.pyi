@@ -32,9 +32,6 @@ from eomgen.scene.making import axis_marks as axis_marks
 # Marks of centres, of rotation or of mass, by their names
 from eomgen.scene.making import center_marks as center_marks
 
-# Two or three numbers as a vector, as they are
-from eomgen.scene.making import exact_vector as exact_vector
-
 # True if an arrow on the page that begins at its place meets fewer lines than one that ends there
 from eomgen.scene.making import is_freer_outward as is_freer_outward
 

@@ -52,6 +52,8 @@ from eomgen.symbolic.expression import (
     substituted,
 )
 
+Place = Vector | Sequence[float] | np.ndarray
+
 
 def scene_of_system(system: System, equations: EquationsOfMotion | None = None) -> Scene:
     """Scene of a system: its drawable elements at a state.
@@ -315,13 +317,14 @@ def _ellipsoid(moments: Sequence[float], m: float, frame: int, body: str) -> Ite
     yield from axis_marks(body, Vector.ZERO, ends, frame)
 
 
-def axis_marks(body: str, center: Vector, ends: Mapping[str, Vector], frame: int) -> Iterator[Mark]:
+def axis_marks(body: str, center: Place, ends: Mapping[str, Place], frame: int) -> Iterator[Mark]:
     """Principal axes through a mass centre, each with its number at one end.
 
     Args:
         ends: from the centre, by the number.
     """
-    for number, end in ends.items():
+    center = exact_vector(center)
+    for number, end in zip(ends, map(exact_vector, ends.values()), strict=True):
         yield Mark(LineForm((center - end, center + end), fine=True), frame, "reaction", body)
         yield Mark(LabelForm(number, center + end), frame, "axes", body)
 
@@ -374,16 +377,17 @@ def arrow_marks(arrows: Iterable[DrawnArrow]) -> Iterator[Mark]:
             yield Mark(ArrowForm(at, vector, arrow.unit, arrow.outward, arrow.text), 0, arrow.role, arrow.of)
 
 
-def center_marks(centers: Iterable[tuple[str, Vector]], of: str = "") -> Iterator[Mark]:
+def center_marks(centers: Iterable[tuple[str, Place]], of: str = "") -> Iterator[Mark]:
     """Marks of centres, of rotation or of mass, by their names."""
-    for name, at in centers:
+    for name, place in centers:
+        at = exact_vector(place)
         yield Mark(PointForm(at), 0, "center", of)
         yield Mark(LabelForm(name, at), 0, "center", of)
 
 
-def exact_vector(numbers: Sequence[float] | np.ndarray) -> Vector:
+def exact_vector(place: Place) -> Vector:
     """Two or three numbers as a vector, as they are."""
-    return Vector(Fraction(float(x)) for x in [*numbers, 0.0][:3])
+    return place if isinstance(place, Vector) else Vector(Fraction(float(x)) for x in [*place, 0.0][:3])
 
 
 def is_freer_outward(lines: Iterable[np.ndarray], at: Sequence[float], vector: Sequence[float]) -> bool:

@@ -19,7 +19,6 @@ from eomgen.mechanics.kinematics import symbols as composition
 from eomgen.model.shapes import MassProperties, Rod, Sector
 from eomgen.proof.masses import FILLED
 from eomgen.results.mass_properties import result
-from eomgen.results.mass_properties import result as steps
 from eomgen.results.mass_properties.result import inertia as verb
 
 PLATE = MODELS / "seeds" / "ch13_p1.toml"
@@ -95,11 +94,11 @@ def test_wrong_parallel_axes_are_seen(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_wrong_principal_axes_and_radii_are_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     """R I R^T = diag(I_1, I_2, I_3), k = sqrt(I/m)"""
-    right = steps.axes_in_numbers
-    monkeypatch.setattr(steps, "axes_in_numbers", lambda *given: [[0, 0, 1], [1, 0, 0], [0, 1, 0]])
+    right = rows.InertiaAbout.axes_in_numbers
+    monkeypatch.setattr(rows.InertiaAbout, "axes_in_numbers", lambda about: [[0, 0, 1], [1, 0, 0], [0, 1, 0]])
     assert any(name.startswith("principal axes") for name in wrong_checks(FRAME))
-    monkeypatch.setattr(steps, "axes_in_numbers", right)
-    monkeypatch.setattr(steps, "_radius", lambda sum, moment: moment)
+    monkeypatch.setattr(rows.InertiaAbout, "axes_in_numbers", right)
+    monkeypatch.setattr(rows.InertiaAbout, "radius", lambda about, moment: moment)
     assert any(name.startswith("masses, centres") for name in wrong_checks(FRAME))
 
 

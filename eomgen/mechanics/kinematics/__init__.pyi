@@ -34,8 +34,8 @@ from eomgen.mechanics.kinematics.motion import spin_between as spin_between
 # A state in numbers, by which exact values are recognised, never made
 from eomgen.mechanics.kinematics.places import Located as Located
 
-# Rows taken as one body: mass, mass centre, inertia about a point
-from eomgen.mechanics.kinematics.principal_axes import InertiaSum as InertiaSum
+# The inertia of a sum of rows about a point
+from eomgen.mechanics.kinematics.principal_axes import InertiaAbout as InertiaAbout
 
 # The principal moments and axes of a tensor
 from eomgen.mechanics.kinematics.principal_axes import Principal as Principal

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Sequence
 from functools import cache, cached_property, cmp_to_key, partial
 
+import numpy as np
+
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics.motion import Motion
 from eomgen.mechanics.kinematics.symbols import Scope
-from eomgen.model import MassProperties
+from eomgen.model import MassProperties, about_axis, polar, second_moments
 from eomgen.symbolic.exact import common_factor, roots, sign_of_terms, simplest, vanishes
 from eomgen.symbolic.expression import (
     Fraction,
@@ -343,6 +345,9 @@ def _with_signs(x: Scalar) -> Scalar:
 # -------- sums of inertia -------------------------------------------------------------------------------------
 # System -> what bodies and their pieces add up to, in one set of axes, about one point.
 
+LONGEST_ROOT = 300  # characters of a moment whose radius of gyration is made short
+MOST_NODES = 5000  # of axes whose numbers are those of the formulas
+
 
 @dataclass(frozen=True)
 class InertiaRow:
@@ -431,6 +436,73 @@ class InertiaSum:
         for row in self.rows:
             total = total + (row.own() + row.shift(point))
         return Matrix.of((self.short(x) for x in line) for line in total)
+
+
+@dataclass(frozen=True)
+class InertiaAbout:
+    """The inertia of a sum of rows about a point, in short form."""
+
+    sum: InertiaSum
+    point: Vector
+
+    @staticmethod
+    def of_body(motion: Motion, body: str, start: State) -> InertiaAbout:
+        """One body about its mass centre, in its own axes."""
+        sum = InertiaSum.of_body(motion, body, start)
+        return InertiaAbout(sum, sum.com)
+
+    @staticmethod
+    def of_bodies(motion: Motion, bodies: Sequence[str], start: State, point: Vector | None = None) -> InertiaAbout:
+        """Several bodies where they are, about a point or their mass centre, ground axes."""
+        sum = InertiaSum.of_bodies(motion, bodies, start)
+        return InertiaAbout(sum, sum.com if point is None else point)
+
+    @cached_property
+    def tensor(self) -> Matrix:
+        return self.sum.tensor(self.point)
+
+    @cached_property
+    def principal(self) -> Principal:
+        return Principal.of(self.tensor, self.sum.motion.scope)
+
+    @property
+    def polar(self) -> Scalar:
+        """The moment about the point itself."""
+        return self.sum.short(polar(self.tensor))
+
+    @property
+    def planar(self) -> Vector:
+        """The moments about the three planes through the point."""
+        P = second_moments(self.tensor)
+        return Vector(self.sum.short(P[k][k]) for k in range(3))
+
+    def product(self, i: int, j: int) -> Scalar:
+        """The integral of x_i x_j dm, the textbook's product of inertia."""
+        return self.sum.short(-self.tensor[i][j])
+
+    def axial(self, along: Vector) -> Scalar:
+        """The moment about the axis through the point in a direction."""
+        return self.sum.short(about_axis(self.tensor, along))
+
+    def radius(self, moment: Scalar) -> Scalar:
+        """k = sqrt(I/m), short where the moment is."""
+        short: Callable[[Scalar], Scalar] = (lambda x: x) if text_size(moment) > LONGEST_ROOT else self.sum.short
+        return short(sqrt(short(over(moment, self.sum.m))))
+
+    def axes_in_numbers(self) -> list[list[float]] | None:
+        """The rows of R in floating point: the exact ones; eigenvectors of the tensor where these have no value, as
+        where a product vanishes in the state alone."""
+        found = self.principal
+        if found.axes is not None and len(order([x for row in found.axes for x in row])) < MOST_NODES:
+            flat = self.sum.numbers([x for row in found.axes for x in row])
+            if flat is not None and np.allclose(np.reshape(flat, (3, 3)) @ np.reshape(flat, (3, 3)).T, np.eye(3)):
+                return [list(row) for row in np.reshape(flat, (3, 3))]
+        entries, moments = (self.sum.numbers(x) for x in ([x for row in self.tensor for x in row], found.moments))
+        if entries is None or moments is None:
+            return None
+        axes = np.linalg.eigh(np.reshape(entries, (3, 3)))[1].T[np.argsort(np.argsort(moments))]
+        axes[2] = np.cross(axes[0], axes[1])
+        return [list(map(float, row)) for row in axes]
 
 
 def _rows(motion: Motion, body: str, pose: Pose, of: str = "") -> tuple[InertiaRow, ...]:

@@ -19,41 +19,14 @@ from eomgen.mechanics.statics.cut_bodies import PlacedPush as PlacedPush
 from eomgen.mechanics.statics.cut_bodies import RequestedSection as RequestedSection
 from eomgen.mechanics.statics.forces_in_sections import KINDS as KINDS
 
-# What a beam in space has: N, V_y, V_z, T, M_y, M_z
-from eomgen.mechanics.statics.forces_in_sections import SPACE_KINDS as SPACE_KINDS
-
-# Extreme of the bending moment within a piece, where V = 0
-from eomgen.mechanics.statics.forces_in_sections import Extreme as Extreme
-
-# Everything that acts on one body, in its own axes, with the values of the reactions
-from eomgen.mechanics.statics.forces_in_sections import MemberLoads as MemberLoads
-
-# The section forces of a beam in space between two stations
-from eomgen.mechanics.statics.forces_in_sections import PieceInSpace as PieceInSpace
-
 # N, V and M along one body
 from eomgen.mechanics.statics.forces_in_sections import SectionForces as SectionForces
 
 # The section forces between two stations, polynomials in s = x - start
 from eomgen.mechanics.statics.forces_in_sections import SectionPiece as SectionPiece
 
-# N, V, T and M along one body in space
-from eomgen.mechanics.statics.forces_in_sections import SectionsInSpace as SectionsInSpace
-
-# Place of a reaction, body axes: of a couple that of the forces of the same constraint, None where it has none
-from eomgen.mechanics.statics.forces_in_sections import place_of as place_of
-
-# t, e_y, e_z of a leg, body axes
-from eomgen.mechanics.statics.forces_in_sections import triad as triad
-
 # X for a unit load that travels along the spans
 from eomgen.mechanics.statics.influence import InfluenceLine as InfluenceLine
-
-# A straight part of the way of the load, on which the influence line is straight
-from eomgen.mechanics.statics.influence import InfluenceSpan as InfluenceSpan
-
-# The axis of a body
-from eomgen.mechanics.statics.member_axis import MemberAxis as MemberAxis
 
 # One load of the structure
 from eomgen.mechanics.statics.virtual_work import Acting as Acting

@@ -11,10 +11,12 @@ fibre: of a beam drawn from left to right the lower one. The weight of a rod, an
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
+
+import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
@@ -23,7 +25,8 @@ from eomgen.mechanics.free_bodies import Axes, Component, Effect, Reactions, joi
 from eomgen.mechanics.statics.member_axis import Leg, MemberAxis, Sizes, axis_of, sizes_of
 from eomgen.model import Couple, PointForce
 from eomgen.symbolic.exact import vanishes
-from eomgen.symbolic.expression import Fraction, Scalar, Vector, is_zero, over, sqrt
+from eomgen.symbolic.expression import Fraction, Node, Scalar, Vector, is_zero, over, sqrt
+from eomgen.symbolic.numeric import FLOAT, evaluate
 from eomgen.symbolic.print import to_text
 
 KINDS = ("axial_force", "shear_force", "bending_moment")
@@ -59,25 +62,26 @@ class SectionPiece:
     Args:
         start, end: along the axis [m].
         leg: on which it lies.
-        N, V, M: coefficients of 1, s, s^2, ...
+        series: coefficients of 1, s, s^2, ..., by KINDS, in space by SPACE_KINDS.
     """
 
     start: Scalar
     end: Scalar
     leg: Leg
-    N: tuple[Scalar, ...]
-    V: tuple[Scalar, ...]
-    M: tuple[Scalar, ...]
+    series: Mapping[str, tuple[Scalar, ...]]
 
     def value(self, kind: str, x: Scalar) -> Scalar:
-        """One of KINDS at x."""
+        """One of the section forces at x."""
         total: Scalar = 0
-        for c in reversed(self.coefficients(kind)):
+        for c in reversed(self.series[kind]):
             total = total * (x - self.start) + c
         return total
 
-    def coefficients(self, kind: str) -> tuple[Scalar, ...]:
-        return {"axial_force": self.N, "shear_force": self.V, "bending_moment": self.M}[kind]
+    def points(self, kind: str, values: Mapping[Node, float], count: int) -> tuple[np.ndarray, np.ndarray]:
+        """(x, one of the section forces there) at so many places of the piece, in numbers."""
+        start, end, *coefficients = map(float, evaluate((self.start, self.end, *self.series[kind]), values, FLOAT))
+        s = np.linspace(0.0, end - start, count)
+        return start + s, np.asarray(sum(c * s**k for k, c in enumerate(coefficients)))
 
 
 @dataclass(frozen=True)
@@ -90,12 +94,15 @@ class Extreme:
 
 @dataclass(frozen=True)
 class SectionForces:
-    """N, V and M along one body.
+    """N, V and M along one body; in space N, V_y, V_z, T, M_y and M_z.
 
     Args:
+        reactions: of the bodies.
         axis: of the body.
         pieces: from station to station.
     """
+
+    reactions: Reactions
 
     axis: MemberAxis
     pieces: tuple[SectionPiece, ...]
@@ -104,8 +111,22 @@ class SectionForces:
     def sizes(self) -> Sizes:
         return self.axis.sizes
 
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """KINDS, in space SPACE_KINDS."""
+        return tuple(self.pieces[0].series)
+
+    @property
+    def loads(self) -> MemberLoads:
+        """All that acts on the body."""
+        return MemberLoads(self.reactions, self.axis.body, self.sizes)
+
+    def triad(self, piece: SectionPiece) -> tuple[Vector, Vector, Vector]:
+        """t, e_y, e_z of a piece in space, body axes."""
+        return triad(piece.leg, self.sizes)
+
     def value(self, kind: str, x: Scalar, side: str = "") -> Scalar:
-        """One of KINDS at a distance from the start.
+        """One of the section forces at a distance from the start.
 
         Args:
             side: "before" or "after", where it jumps.
@@ -144,7 +165,7 @@ class SectionForces:
         return tuple(e for piece in self.pieces for e in self._zeros(piece))
 
     def _zeros(self, piece: SectionPiece) -> Iterable[Extreme]:
-        for root in _roots(piece.V, self.sizes):
+        for root in _roots(piece.series["shear_force"], self.sizes):
             try:
                 inside = self.sizes.sign(root) > 0 and self.sizes.sign(piece.end - piece.start - root) > 0
             except DerivationError:
@@ -166,7 +187,17 @@ class SectionForces:
                 "section forces are found in the plane", f"bodies.{body}", fix="fix the beam in a model of the plane"
             )
         axis, placed, spread = _acting_along(reactions, body)
-        return SectionForces(axis, tuple(_pieces(axis, placed, spread)))
+        return SectionForces(reactions, axis, tuple(_pieces(axis, placed, spread)))
+
+    @staticmethod
+    def in_space(reactions: Reactions, body: str) -> SectionForces:
+        """N, V_y, V_z, T, M_y and M_z along a body.
+
+        Raises:
+            DerivationError: as of `of`.
+        """
+        axis, placed, spread = _acting_along(reactions, body)
+        return SectionForces(reactions, axis, tuple(_pieces_in_space(axis, placed, spread)))
 
 
 # -- along the axis ----------------------------------------------------------------------------------
@@ -245,7 +276,8 @@ def _piece(
     N = (-(R @ t), -(q @ t), -HALF * (slope @ t))
     V = (R @ n, q @ n, HALF * (slope @ n))
     M = (-T, R @ n, HALF * (q @ n), SIXTH * (slope @ n))
-    return SectionPiece(*ends, leg, *(tuple(sizes.simple(c) for c in series) for series in (N, V, M)))
+    found = (tuple(sizes.simple(c) for c in series) for series in (N, V, M))
+    return SectionPiece(*ends, leg, dict(zip(KINDS, found, strict=True)))
 
 
 def stations_of(axis: MemberAxis, actions: Sequence[Action], spreads: Sequence[Spread]) -> list[Scalar]:
@@ -443,7 +475,7 @@ class MemberLoads:
 
 
 # -------- sections in space -------------------------------------------------------------------------------------------
-# Reactions, body -> SectionsInSpace: force and moment in each section of a beam in space.
+# Reactions, body -> SectionForces: force and moment in each section of a beam in space.
 #
 # What stands before the section at x has the resultant R and the moment T about the section; what stands behind pushes
 # it with
@@ -458,40 +490,6 @@ SPACE_KINDS = ("N", "V_y", "V_z", "T", "M_y", "M_z")
 Y, Z = Vector((0, 1, 0)), Vector((0, 0, 1))
 
 
-@dataclass(frozen=True)
-class PieceInSpace:
-    """The section forces between two stations.
-
-    Args:
-        start, end: along the axis [m].
-        leg: on which it lies.
-        coefficients: of 1, s, s^2, ..., s = x - start, by SPACE_KINDS.
-    """
-
-    start: Scalar
-    end: Scalar
-    leg: Leg
-    coefficients: dict[str, tuple[Scalar, ...]]
-
-
-@dataclass(frozen=True)
-class SectionsInSpace:
-    """N, V, T and M along one body in space."""
-
-    axis: MemberAxis
-    pieces: tuple[PieceInSpace, ...]
-
-    @staticmethod
-    def of(reactions: Reactions, body: str) -> SectionsInSpace:
-        """The section forces of a body.
-
-        Raises:
-            DerivationError: as of `SectionForces.of`.
-        """
-        axis, placed, spread = _acting_along(reactions, body)
-        return SectionsInSpace(axis, tuple(_pieces_in_space(axis, placed, spread)))
-
-
 def triad(leg: Leg, sizes: Sizes) -> tuple[Vector, Vector, Vector]:
     """t, e_y, e_z of a leg, body axes."""
     t = leg.along
@@ -504,7 +502,7 @@ def triad(leg: Leg, sizes: Sizes) -> tuple[Vector, Vector, Vector]:
     return t, e_y, t.cross(e_y)
 
 
-def _pieces_in_space(axis: MemberAxis, actions: Sequence[Action], spreads: Sequence[Spread]) -> Iterator[PieceInSpace]:
+def _pieces_in_space(axis: MemberAxis, actions: Sequence[Action], spreads: Sequence[Spread]) -> Iterator[SectionPiece]:
     """Pieces from station to station; all that stands before a piece is summed to one force and one moment."""
     sizes = axis.sizes
     R: Vector = Vector.ZERO
@@ -527,7 +525,7 @@ def _pieces_in_space(axis: MemberAxis, actions: Sequence[Action], spreads: Seque
             for series, own in zip((force, moment), axes, strict=True)
             for kind, e in own.items()
         }
-        yield PieceInSpace(start, end, leg, found)
+        yield SectionPiece(start, end, leg, found)
         length = end - start
         R, T = (_simple_vector(sizes, -1 * _polynomial(series, length)) for series in (force, moment))
 

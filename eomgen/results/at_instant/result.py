@@ -46,7 +46,7 @@ from eomgen.results.at_instant.steps import (
     relative_payload,
     relative_steps,
 )
-from eomgen.scene import DrawnArrow, arrow_marks, center_marks, exact_vector
+from eomgen.scene import DrawnArrow, arrow_marks, center_marks
 from eomgen.study import kinematic_state
 from eomgen.symbolic.expression import Node, Scalar, State, Vector, depends_on, order, substituted, symbols_of
 from eomgen.symbolic.numeric import FLOAT, evaluate, tolerances
@@ -394,8 +394,7 @@ class _Panels:
         bare = Sketch(state.system, {**places, **known}, colors=colors)
         near, self.far = self._centers(bare.extent)
         velocities = (DrawnArrow(names, at, v, "velocity", outward=True, unit="m/s") for names, at, v in self.points)
-        centers = ((name, exact_vector(at)) for name, at in near.items())
-        self.sketch = replace(bare, more=(*arrow_marks(velocities), *center_marks(centers)))
+        self.sketch = replace(bare, more=(*arrow_marks(velocities), *center_marks(near.items())))
 
     def number(self, x: Scalar) -> float:
         """A scalar as a number, the rate that was left open being 1."""

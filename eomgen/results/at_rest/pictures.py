@@ -9,27 +9,10 @@ from typing import Any
 import numpy as np
 
 from eomgen.documents import INK, Picture, PlacedName, Scale, four_figures
-from eomgen.mechanics.statics import (
-    KINDS,
-    Extreme,
-    InfluenceLine,
-    PieceInSpace,
-    SectionForces,
-    SectionPiece,
-    SectionsInSpace,
-    StaticReactions,
-)
+from eomgen.mechanics.statics import InfluenceLine, SectionForces, StaticReactions
 from eomgen.model import Model
-from eomgen.proof import (
-    Check,
-    DrawnPanel,
-    ReportedPush,
-    diagrams_drawn,
-    space_sections_drawn,
-    state_of,
-    structure_drawn,
-)
-from eomgen.results.at_rest.section_steps import Sections, sections_in_space
+from eomgen.proof import Check, DrawnPanel, ReportedPush, structure_pictured
+from eomgen.results.at_rest.section_steps import LETTERS, Sections, sections_in_space
 from eomgen.results.at_rest.structure import StaticScene, draw_structure, label_of
 from eomgen.scene import pushes_reported
 from eomgen.symbolic.expression import Node, Scalar
@@ -58,10 +41,11 @@ def statics_picture(found: StaticReactions, sections: Sections, influence: Influ
     scene = StaticScene(found, not missing)
     beams = list(sections.found.values())[:MOST_COLUMNS]
     bodies = beams or list(sections_in_space(found.balance).values())[:MOST_COLUMNS]
+    rows = len(LETTERS if beams else IN_SPACE) if bodies else 0
     line = influence if not missing else None
     heights = [
         float(np.clip(WIDTH * scene.proportion, LOWEST, HIGHEST)),
-        *([DIAGRAM] * (len(KINDS) if beams else len(IN_SPACE) if bodies else 0)),
+        *([DIAGRAM] * rows),
         *([1.5 * DIAGRAM] if line else []),
     ]
     words = f"drawn with {', '.join(missing)} = 1" if missing else ""
@@ -83,11 +67,8 @@ def picture_checks(
     found: StaticReactions, sections: Sections, influence: InfluenceLine | None, panels: Sequence[DrawnPanel]
 ) -> Iterator[Check]:
     """Checks of the picture: its diagrams and its influence line by their panels, the arrows by their strokes."""
-    yield from diagrams_drawn(found, sections.found, influence, panels)
-    model = found.system.scope.model
-    if model.space == "space" and not missing_values(model):
-        yield from space_sections_drawn(found, state_of(found), sections_in_space(found.balance), panels)
-    yield from structure_drawn(pushes_on(found))
+    in_space = {} if missing_values(found.system.scope.model) else sections_in_space(found.balance)
+    yield from structure_pictured(found, {**sections.found, **in_space}, influence, panels, pushes_on(found))
 
 
 def pushes_on(found: StaticReactions) -> Iterable[ReportedPush]:
@@ -99,7 +80,7 @@ def pushes_on(found: StaticReactions) -> Iterable[ReportedPush]:
 def _in_a_grid(
     figure: Any,
     scene: StaticScene,
-    bodies: Sequence[SectionForces | SectionsInSpace],
+    bodies: Sequence[SectionForces],
     line: InfluenceLine | None,
     heights: list[float],
 ) -> None:
@@ -107,12 +88,9 @@ def _in_a_grid(
     grid = figure.add_gridspec(len(heights), max(1, len(bodies)), height_ratios=heights)
     draw_structure(figure.add_subplot(grid[0, :]), scene)
     for column, forces in enumerate(bodies):
-        count = len(KINDS) if isinstance(forces, SectionForces) else len(IN_SPACE)
-        panels = [figure.add_subplot(grid[1 + k, column]) for k in range(count)]
-        if isinstance(forces, SectionForces):
-            diagram_panels(panels, forces, scene.bare.values, scene.scale, scene.written)
-        else:
-            in_space(panels, forces, scene.bare.values, scene.scale, scene.written)
+        plane = set(forces.kinds) == set(LETTERS)
+        panels = [figure.add_subplot(grid[1 + k, column]) for k in range(len(LETTERS if plane else IN_SPACE))]
+        (diagram_panels if plane else in_space)(panels, forces, scene.bare.values, scene.scale, scene.written)
     if line is not None:
         influence_panel(figure.add_subplot(grid[-1, :]), line, scene.bare.values)
 
@@ -208,7 +186,6 @@ def missing_values(model: Model) -> list[str]:
 
 COLORS = {"axial_force": "#2457a6", "shear_force": "#2e7d4f", "bending_moment": "#b03a2e"}
 UNITS = {"axial_force": "N", "shear_force": "N", "bending_moment": "N m"}
-NAMES = {"axial_force": "N", "shear_force": "V", "bending_moment": "M"}
 FINE = 40  # points of a curve within one piece
 SI = Scale()
 
@@ -230,8 +207,8 @@ def diagram_panels(
     """
     stations = [forces.pieces[0].start, *(piece.end for piece in forces.pieces)]
     places = _numbers(stations, values)
-    for panel, kind in zip(panels, KINDS, strict=True):
-        curves = [_curve(piece, kind, values, scale) for piece in forces.pieces]
+    for panel, kind in zip(panels, forces.kinds, strict=True):
+        curves = _curves(forces, kind, values, scale)
         _filled(panel, curves, COLORS[kind])
         upright = panel.get_xaxis_transform()
         panel.vlines(places, 0, 1, transform=upright, color="#b0b0b0", linewidth=0.6, linestyle=":", zorder=0.5)
@@ -239,12 +216,12 @@ def diagram_panels(
             panel.invert_yaxis()
         if written is None:
             ends = [(x[k], y[k]) for x, y in curves for k in (0, -1)]
-            extremes = [_extreme(e, values, scale) for e in forces.extremes] if kind == "bending_moment" else []
-            _labels(panel, [*ends, *extremes])
-            panel.set_ylabel(f"{NAMES[kind]} of {forces.axis.body} [{scale.unit(UNITS[kind])}]")
+            extremes = (_numbers((e.x, e.M), values) for e in forces.extremes if kind == "bending_moment")
+            _labels(panel, [*ends, *((x, scale(M)) for x, M in extremes)])
+            panel.set_ylabel(f"{LETTERS[kind]} of {forces.axis.body} [{scale.unit(UNITS[kind])}]")
         else:
             _labels(panel, _formulas(forces, kind, values, written))
-            panel.set(ylabel=f"{NAMES[kind]}, {forces.axis.body}", yticks=[0])
+            panel.set(ylabel=f"{LETTERS[kind]}, {forces.axis.body}", yticks=[0])
             panel.set_xticks(places, [_formula(written, forces, x) for x in stations])
     panels[-1].set_xlabel("x [m]" if written is None else "x")
 
@@ -257,7 +234,7 @@ COUPLES = ("T", "M_y", "M_z")
 
 def in_space(
     panels: Sequence[Any],
-    forces: SectionsInSpace,
+    forces: SectionForces,
     values: Mapping[Node, float],
     scale: Scale = SI,
     written: Setter | None = None,
@@ -267,7 +244,7 @@ def in_space(
     for panel, kinds in zip(panels, IN_SPACE, strict=True):
         points: list[tuple[Any, ...]] = []
         for color, kind in zip(COLORS_IN_SPACE, kinds, strict=False):
-            curves = [_sampled(piece, piece.coefficients[kind], values, scale) for piece in forces.pieces]
+            curves = _curves(forces, kind, values, scale)
             _filled(panel, curves, color, f"${kind}$" if len(kinds) > 1 else "")
             points += _at_the_ends(forces, kind, curves, written)
         upright = panel.get_xaxis_transform()
@@ -283,18 +260,15 @@ def in_space(
 
 
 def _at_the_ends(
-    forces: SectionsInSpace, kind: str, curves: Sequence[tuple[np.ndarray, np.ndarray]], written: Setter | None
+    forces: SectionForces, kind: str, curves: Sequence[tuple[np.ndarray, np.ndarray]], written: Setter | None
 ) -> Iterable[tuple[Any, ...]]:
     """(x, value) at the ends of each piece, and the formula where formulas stand for numbers."""
     for piece, (x, y) in zip(forces.pieces, curves, strict=True):
-        for k, s in ((0, 0), (-1, piece.end - piece.start)):
+        for k, end in ((0, piece.start), (-1, piece.end)):
             if written is None:
                 yield x[k], y[k]
             else:
-                value: Scalar = 0
-                for c in reversed(piece.coefficients[kind]):
-                    value = value * s + c
-                yield x[k], y[k], label_of(written, forces.axis.sizes.shortest(value))
+                yield x[k], y[k], _formula(written, forces, piece.value(kind, end))
 
 
 def _formulas(
@@ -338,24 +312,12 @@ def _is_level(line: InfluenceLine, values: Mapping[Node, float]) -> bool:
     )
 
 
-def _extreme(extreme: Extreme, values: Mapping[Node, float], scale: Scale) -> tuple[float, float]:
-    x, M = _numbers((extreme.x, extreme.M), values)
-    return x, scale(M)
-
-
-def _curve(piece: SectionPiece, kind: str, values: Mapping[Node, float], scale: Scale) -> tuple[np.ndarray, np.ndarray]:
-    """Points of one piece."""
-    return _sampled(piece, piece.coefficients(kind), values, scale)
-
-
-def _sampled(
-    piece: SectionPiece | PieceInSpace, series: Sequence[Scalar], values: Mapping[Node, float], scale: Scale
-) -> tuple[np.ndarray, np.ndarray]:
-    """Points of a polynomial over one piece."""
-    start, end = _numbers((piece.start, piece.end), values)
-    s = np.linspace(0.0, end - start, FINE)
-    coefficients = [scale(c) for c in _numbers(series, values)]
-    return start + s, sum(c * s**k for k, c in enumerate(coefficients))  # type: ignore[return-value]
+def _curves(
+    forces: SectionForces, kind: str, values: Mapping[Node, float], scale: Scale
+) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Points of each piece."""
+    sampled = (piece.points(kind, values, FINE) for piece in forces.pieces)
+    return [(x, y / scale.factor) for x, y in sampled]
 
 
 def _filled(panel: Any, curves: Iterable[tuple[np.ndarray, np.ndarray]], color: str, label: str = "") -> None:

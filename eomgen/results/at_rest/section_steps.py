@@ -10,13 +10,13 @@ from eomgen.documents import Formula, Grid, Law, Name, Side, Statement, Step, ce
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.free_bodies import Reactions
-from eomgen.mechanics.statics import KINDS, InfluenceLine, SectionForces, SectionPiece, SectionsInSpace
+from eomgen.mechanics.statics import InfluenceLine, SectionForces
 from eomgen.model import is_node
 from eomgen.proof import ReportedSections
 from eomgen.symbolic.expression import Node, Scalar
 from eomgen.symbolic.print import to_text
 
-LETTERS = dict(zip(KINDS, ("N", "V", "M"), strict=True))
+LETTERS = {"axial_force": "N", "shear_force": "V", "bending_moment": "M"}
 SIGNS = (
     "N is positive as tension, V where it turns the piece on which it acts clockwise, M where it stretches the "
     "right-hand fibre, as one goes along the axis: of a beam from left to right the lower one. "
@@ -53,14 +53,14 @@ def sections_of(reactions: Reactions) -> Sections:
     return Sections(found, reasons)
 
 
-def sections_in_space(reactions: Reactions) -> dict[str, SectionsInSpace]:
+def sections_in_space(reactions: Reactions) -> dict[str, SectionForces]:
     """Section forces of every body in space that is a beam and not a rod of a truss alone."""
     system = reactions.balance.system
     found = {}
     for link in system.motion.links if system.scope.model.space == "space" else ():
         if not is_node(link.name):
             with suppress(DerivationError):
-                found[link.name] = SectionsInSpace.of(reactions, link.name)
+                found[link.name] = SectionForces.in_space(reactions, link.name)
     return found
 
 
@@ -83,7 +83,7 @@ def section_payload(sections: Sections) -> dict[str, Any]:
         x = _variable(forces)
         found[body] = {
             "variable": x.name,
-            "pieces": [_row(forces, piece, x) for piece in forces.pieces],
+            "pieces": list(_rows(forces, x)),
             "extremes": [{"x": to_text(e.x), "M": to_text(e.M)} for e in forces.extremes],
         }
     return found | {body: {"message": reason} for body, reason in sections.reasons.items()}
@@ -106,10 +106,11 @@ def reported_sections(
         yield body, ReportedSections(payload[body]["variable"], payload[body]["pieces"], payload[body]["extremes"])
 
 
-def _row(forces: SectionForces, piece: SectionPiece, x: Node) -> dict[str, str]:
-    values = {LETTERS[kind]: to_text(forces.sizes.shortest(piece.value(kind, x))) for kind in KINDS}
-    ends = (to_text(forces.sizes.shortest(end)) for end in (piece.start, piece.end))
-    return {**dict(zip(("from", "to"), ends, strict=True)), **values}
+def _rows(forces: SectionForces, x: Node) -> Iterator[dict[str, str]]:
+    for piece in forces.pieces:
+        values = {LETTERS[kind]: to_text(forces.sizes.shortest(piece.value(kind, x))) for kind in forces.kinds}
+        ends = (to_text(forces.sizes.shortest(end)) for end in (piece.start, piece.end))
+        yield {**dict(zip(("from", "to"), ends, strict=True)), **values}
 
 
 def _of_body(forces: SectionForces, number: int) -> Iterable[Statement]:
@@ -121,7 +122,7 @@ def _of_body(forces: SectionForces, number: int) -> Iterable[Statement]:
         " from its start; all that acts before the section gives N, V and M. ",
         *((SIGNS, RELATIONS, ":") if number == 0 else (RELATIONS, ":")),
     )
-    rows = [(piece.start, piece.end, *(piece.value(kind, x) for kind in KINDS)) for piece in forces.pieces]
+    rows = [(piece.start, piece.end, *(piece.value(kind, x) for kind in forces.kinds)) for piece in forces.pieces]
     written = tuple(tuple(forces.sizes.shortest(cell) for cell in row) for row in rows)
     yield Grid(("from x", "to x", *map(Law.of_letter, "NVM")), written)
     if forces.extremes:

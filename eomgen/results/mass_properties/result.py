@@ -37,24 +37,20 @@ from eomgen.documents import (
 from eomgen.errors import DerivationError, MissingValues, ModelError, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.kinematics import InertiaSum, Principal, SystemInertia
+from eomgen.mechanics.kinematics import InertiaAbout, SystemInertia
 from eomgen.mechanics.start import Start
-from eomgen.model import ModelOrPath, Values, about_axis, model_at, nearest, polar, second_moments
+from eomgen.model import ModelOrPath, Values, model_at, nearest
 from eomgen.proof import Certificate, Stated, mass_checks
 from eomgen.resources import doing
-from eomgen.scene import Mark, axis_marks, center_marks, exact_vector, scene_of_inertia
+from eomgen.scene import Mark, axis_marks, center_marks, scene_of_inertia
 from eomgen.study import study_of
 from eomgen.symbolic.expression import (
-    Matrix,
     Node,
     Scalar,
     State,
     Vector,
     holds_many_digits,
     is_zero,
-    order,
-    over,
-    sqrt,
     symbols_of,
 )
 from eomgen.symbolic.print import readable_text, text_size
@@ -86,8 +82,7 @@ class Section:
     """A sum about one point.
 
     Args:
-        sum: the rows, in one set of axes.
-        point: about which.
+        about: the rows, in one set of axes, and the point.
         of: the part of the results' names in parentheses: "plate", "plate, O", "O".
         flat: only the moment about z is known.
         centroidal: the point is the mass centre.
@@ -95,8 +90,7 @@ class Section:
         bodies: whose rows they are.
     """
 
-    sum: InertiaSum
-    point: Vector
+    about: InertiaAbout
     of: str
     flat: bool
     centroidal: bool
@@ -105,11 +99,7 @@ class Section:
 
     @property
     def plane(self) -> bool:
-        return self.sum.motion.scope.model.space == "plane"
-
-    @cached_property
-    def tensor(self) -> Matrix:
-        return self.sum.tensor(self.point)
+        return self.about.sum.motion.scope.model.space == "plane"
 
     def named(self, letter: str, index: str, value: Scalar, unit: str) -> InertiaEntry:
         text = f"{letter}_{index}" if index else letter
@@ -120,7 +110,7 @@ class Section:
 
 def number(section: Section, x: Scalar) -> str:
     """The value as text; "" where it holds what has none."""
-    values = section.sum.numbers((x,))
+    values = section.about.sum.numbers((x,))
     return "" if values is None else f"{values[0] + 0.0:.6g}"
 
 
@@ -130,13 +120,13 @@ def grid(section: Section, head: tuple[Cell, ...], rows: Sequence[Sequence[str |
     What is longer than a line, and has no number, stands there by its size.
     """
     scalars = [x for row in rows for x in row if not isinstance(x, str | Law)]
-    valued = section.sum.numbers(scalars) is not None
-    in_numbers = valued and any(text_size(section.sum.short(x)) > LONGEST for x in scalars)
+    valued = section.about.sum.numbers(scalars) is not None
+    in_numbers = valued and any(text_size(section.about.sum.short(x)) > LONGEST for x in scalars)
 
     def cell(x: str | Law | Scalar) -> Cell:
         if isinstance(x, str | Law):
             return x
-        return number(section, x) if in_numbers else _bounded(section.sum.short(x), LONGEST_LINE)
+        return number(section, x) if in_numbers else _bounded(section.about.sum.short(x), LONGEST_LINE)
 
     return Grid(head, tuple(tuple(map(cell, row)) for row in rows))
 
@@ -164,17 +154,17 @@ def line(section: Section, result: InertiaEntry) -> Formula:
 def mass_results(section: Section) -> list[InertiaEntry]:
     """Mass and mass centre."""
     count = 2 if section.plane else 3
-    places = zip(AXES[:count], section.sum.com, strict=False)
-    return [section.named("m", "", section.sum.m, "kg"), *(section.named(x, "C", c, "m") for x, c in places)]
+    places = zip(AXES[:count], section.about.sum.com, strict=False)
+    return [section.named("m", "", section.about.sum.m, "kg"), *(section.named(x, "C", c, "m") for x, c in places)]
 
 
 def masses_grid(section: Section) -> Iterator[Statement]:
     """Table of the pieces with their masses and mass centres."""
-    if len(section.sum.rows) == 1:
+    if len(section.about.sum.rows) == 1:
         return
     count = 2 if section.plane else 3
     head: tuple[Cell, ...] = ("", Law.of_letter("m"), *(Law.of_letter(f"{axis}_C") for axis in AXES[:count]))
-    rows = [(row.label, row.sign * row.mass.m, *row.mass.com[:count]) for row in section.sum.rows]
+    rows = [(row.label, row.sign * row.mass.m, *row.mass.com[:count]) for row in section.about.sum.rows]
     yield grid(section, head, rows)
 
 
@@ -184,21 +174,16 @@ def masses_grid(section: Section) -> Iterator[Statement]:
 def moments_grid(section: Section) -> Iterator[Statement]:
     """Table of each row's own moments and its parallel-axis terms; products of inertia have the textbook's plus."""
     columns = _columns(section)
-    if all(is_zero(x) for row in section.sum.rows for line in row.shift(section.point) for x in line):
+    point, tensor = section.about.point, section.about.tensor
+    if all(is_zero(x) for row in section.about.sum.rows for line in row.shift(point) for x in line):
         return
     rows: list[tuple[str | Scalar, ...]] = []
-    for row in section.sum.rows:
-        for what, part in (("own", row.own()), ("parallel axes", row.shift(section.point))):
-            rows.append((f"{row.label}, {what}", *(_plus(part, i, j) for i, j in columns)))
-    rows.append(("sum", *(_plus(section.tensor, i, j) for i, j in columns)))
+    for row in section.about.sum.rows:
+        for what, part in (("own", row.own()), ("parallel axes", row.shift(point))):
+            rows.append((f"{row.label}, {what}", *(part[i][j] if i == j else -part[i][j] for i, j in columns)))
+    rows.append(("sum", *(tensor[i][j] if i == j else -tensor[i][j] for i, j in columns)))
     yield prose("Own moments, and with d from the point to the mass centre, ", STEINER, ":")
     yield grid(section, ("", *(Law.of_letter(f"J_{AXES[i]}{'' if i == j else AXES[j]}") for i, j in columns)), rows)
-
-
-def _plus(I: Matrix, i: int, j: int) -> Scalar:
-    """A moment, or a product with the textbook's plus."""
-    entry: Scalar = I[i][j] if i == j else -I[i][j]
-    return entry
 
 
 STEINER = Law(
@@ -215,23 +200,21 @@ def _columns(section: Section) -> list[tuple[int, int]]:
 
 def tensor_results(section: Section) -> list[InertiaEntry]:
     """The entries of the tensor, and the textbook's products."""
-    I = section.tensor
-    found = [section.named("I", AXES[i] + AXES[j], I[i][j], "kg*m^2") for i, j in _columns(section)]
-    products = [(i, j) for i, j in _columns(section) if i != j]
-    textbook = (section.sum.short(_plus(I, i, j)) for i, j in products)
-    named = (section.named("J", AXES[i] + AXES[j], x, "kg*m^2") for (i, j), x in zip(products, textbook, strict=True))
-    return [*found, *named]
+    columns, about = _columns(section), section.about
+    found = [section.named("I", AXES[i] + AXES[j], about.tensor[i][j], "kg*m^2") for i, j in columns]
+    products = [(i, j) for i, j in columns if i != j]
+    return [*found, *(section.named("J", AXES[i] + AXES[j], about.product(i, j), "kg*m^2") for i, j in products)]
 
 
 def conventions_grid(section: Section) -> Grid:
     """Tensor and textbook side by side."""
-    I = section.tensor
+    I = section.about.tensor
     rows: list[tuple[Law | Scalar, ...]] = []
     for i, j in _columns(section):
         pair = AXES[i] + AXES[j]
         other = AXES[i] if i == j else pair
         textbook = Law(f"J_{other}", f"J_{{{other}}}")
-        rows.append((Law(f"I_{pair}", f"I_{{{pair}}}"), I[i][j], textbook, _plus(I, i, j)))
+        rows.append((Law(f"I_{pair}", f"I_{{{pair}}}"), I[i][j], textbook, I[i][j] if i == j else -I[i][j]))
     return grid(section, ("tensor (products with -)", "kg*m^2", "textbook (products with +)", "kg*m^2"), rows)
 
 
@@ -239,16 +222,14 @@ def polar_results(section: Section) -> list[InertiaEntry]:
     """About the point itself, and about the planes through it."""
     if section.flat:
         return []
-    P = second_moments(section.tensor)
-    count = 2 if section.plane else 3
-    planes = [section.named("P", AXES[k], section.sum.short(P[k][k]), "kg*m^2") for k in range(count)]
-    return [section.named("J", "P", section.sum.short(polar(section.tensor)), "kg*m^2"), *planes]
+    planes = zip(AXES[: 2 if section.plane else 3], section.about.planar, strict=False)
+    of_planes = [section.named("P", axis, x, "kg*m^2") for axis, x in planes]
+    return [section.named("J", "P", section.about.polar, "kg*m^2"), *of_planes]
 
 
 def axis_results(section: Section, point: Vector, along: Vector) -> list[InertiaEntry]:
     """About the axis through a point."""
-    value = section.sum.short(about_axis(section.sum.tensor(point), along))
-    return [section.named("J", "axis", value, "kg*m^2")]
+    return [section.named("J", "axis", replace(section.about, point=point).axial(along), "kg*m^2")]
 
 
 # -- principal axes ---------------------------------------------------------------------------------
@@ -258,63 +239,41 @@ def principal_statements(section: Section) -> tuple[list[Statement], list[Inerti
     """The principal moments, radii of gyration and axes; the rows of R as numbers too, where they have values."""
     if section.flat:
         return [], [], None
-    found = Principal.of(section.tensor, section.sum.motion.scope)
+    about, found = section.about, section.about.principal
     results = [section.named("I", str(k), x, "kg*m^2") for k, x in enumerate(found.moments, start=1)]
-    if not is_zero(section.sum.m):
-        radii = (_radius(section.sum, x) for x in found.moments)
+    if not is_zero(section.about.sum.m):
+        radii = map(about.radius, found.moments)
         results += [section.named("k", str(k), x, "m") for k, x in enumerate(radii, start=1)]
-    rows = axes_in_numbers(section, found)
-    statements: list[Statement] = [prose(_words(found)), *(line(section, result) for result in results)]
-    return [*statements, *_axes_grid(section, found, rows)], results, rows
+    rows = about.axes_in_numbers()
+    words = _words(found.equal, of_order=found.sorted)
+    statements: list[Statement] = [prose(words), *(line(section, result) for result in results)]
+    return [*statements, *_axes_grid(found.axes, rows)], results, rows
 
 
-def _radius(sum: InertiaSum, moment: Scalar) -> Scalar:
-    """k = sqrt(I/m), short where the moment is."""
-    if text_size(moment) > LONGEST_LINE:
-        root: Scalar = sqrt(over(moment, sum.m))
-        return root
-    return sum.short(sqrt(sum.short(over(moment, sum.m))))
-
-
-def _words(found: Principal) -> str:
+def _words(equal: Sequence[tuple[int, int]], *, of_order: bool) -> str:
     words = "Principal moments, and radii of gyration k = sqrt(I/m)"
-    if not found.sorted:
+    if not of_order:
         words += " (which is the largest depends on the values)"
-    if len(found.equal) == 3:
+    if len(equal) == 3:
         return words + ". All are equal: every axis is principal:"
-    if found.equal:
-        k, n = found.equal[0]
+    if equal:
+        k, n = equal[0]
         return words + f". I_{k + 1} = I_{n + 1}: every axis in the plane of axes {k + 1} and {n + 1} is principal:"
     return words + ":"
 
 
-def _axes_grid(section: Section, found: Principal, rows: list[list[float]] | None) -> Iterator[Statement]:
+def _axes_grid(exact: Sequence[Vector] | None, rows: list[list[float]] | None) -> Iterator[Statement]:
     head: tuple[Cell, ...] = ("axis", *map(Law.of_letter, AXES))
     words = "The rows of R are the principal axes, right-handed: R I R^T is diagonal."
     longest = LONGEST if rows is not None else LONGEST_LINE
-    if found.axes is not None and all(text_size(x) <= longest for row in found.axes for x in row):
+    if exact is not None and all(text_size(x) <= longest for row in exact for x in row):
         yield prose(words)
-        yield Grid(head, tuple((str(k), *row) for k, row in enumerate(found.axes, start=1)))
+        yield Grid(head, tuple((str(k), *row) for k, row in enumerate(exact, start=1)))
     elif rows is not None:
         yield prose(f"{words} In numbers, the closed form is long:")
         yield Grid(head, tuple((str(k), *(f"{x + 0.0:.6f}" for x in row)) for k, row in enumerate(rows, start=1)))
     else:
         yield prose("The principal axes have no short closed form; give the parameters values to see them.")
-
-
-def axes_in_numbers(section: Section, found: Principal) -> list[list[float]] | None:
-    """The rows of R in floating point: the exact ones; eigenvectors of the tensor where these have no value, as where
-    a product vanishes in the state alone."""
-    if found.axes is not None and len(order([x for row in found.axes for x in row])) < 5000:
-        flat = section.sum.numbers([x for row in found.axes for x in row])
-        if flat is not None and np.allclose(np.reshape(flat, (3, 3)) @ np.reshape(flat, (3, 3)).T, np.eye(3)):
-            return [list(row) for row in np.reshape(flat, (3, 3))]
-    entries, moments = (section.sum.numbers(x) for x in ([x for row in section.tensor for x in row], found.moments))
-    if entries is None or moments is None:
-        return None
-    axes = np.linalg.eigh(np.reshape(entries, (3, 3)))[1].T[np.argsort(np.argsort(moments))]
-    axes[2] = np.cross(axes[0], axes[1])
-    return [list(map(float, row)) for row in axes]
 
 
 def named_results(results: Sequence[InertiaEntry]) -> dict[str, InertiaEntry]:
@@ -438,9 +397,10 @@ class _Report:
 
     def _when(self, section: Section) -> Iterable[Statement]:
         """Sentence that names the state of the numbers, if the requested bodies move."""
-        moving = set(self.system.scope.symbols.q) & set(symbols_of((*section.point, *chain(*section.tensor))))
+        about, q = section.about, self.system.scope.symbols.q
+        moving = set(q) & set(symbols_of((*about.point, *chain(*about.tensor))))
         if moving and self.start:
-            where = ", ".join(f"{q.name} = {self.start[q]:.6g}" for q in self.system.scope.symbols.q if q in moving)
+            where = ", ".join(f"{x.name} = {self.start[x]:.6g}" for x in q if x in moving)
             yield prose(f"Numbers at the start: {where}.")
 
     @property
@@ -465,7 +425,7 @@ class _Report:
         sections = [self._own(body) for body in bodies]
         made = [self._step(f"Body '{s.of}'", f"inertia_{s.of}", s) for s in sections]
         if len(bodies) > 1:
-            whole = InertiaSum.of_bodies(self.system.motion, bodies, self.start)
+            whole = InertiaAbout.of_bodies(self.system.motion, bodies, self.start)
             section = self._centroidal(whole, "", bodies)
             made.append(self._step("The bodies together, ground axes", "inertia_together", section))
         if self.about is not None or self.axis is not None:
@@ -489,13 +449,12 @@ class _Report:
         }
 
     def _own(self, body: str) -> Section:
-        return self._centroidal(InertiaSum.of_body(self.system.motion, body, self.start), body, (body,))
+        return self._centroidal(InertiaAbout.of_body(self.system.motion, body, self.start), body, (body,))
 
-    def _centroidal(self, sum: InertiaSum, of: str, bodies: tuple[str, ...]) -> Section:
+    def _centroidal(self, about: InertiaAbout, of: str, bodies: tuple[str, ...]) -> Section:
         motion = self.system.motion
         return Section(
-            sum,
-            sum.com,
+            about,
             of,
             bool(SystemInertia(motion).flat(bodies)),
             True,
@@ -529,7 +488,7 @@ class _Report:
         """Records the values that a section states, for its proof."""
         values = {result.name.partition("(")[0]: result.value for result in results}
         in_ground = not (section.centroidal and section.of)
-        self.stated.append(Stated(section.of, section.bodies, in_ground, section.point, values, rows, axis))
+        self.stated.append(Stated(section.of, section.bodies, in_ground, section.about.point, values, rows, axis))
 
     def _about(self, bodies: tuple[str, ...]) -> Any:
         """The bodies together about a point, and about an axis through it."""
@@ -541,9 +500,8 @@ class _Report:
                 "give 'inertia' (0 for a point), or a shape; or leave it out: --body",
             )
         flat = bool(SystemInertia(self.system.motion).flat(bodies))
-        section = Section(
-            InertiaSum.of_bodies(self.system.motion, bodies, self.start), point, name, flat, False, (), bodies
-        )
+        whole = InertiaAbout.of_bodies(self.system.motion, bodies, self.start, point)
+        section = Section(whole, name, flat, False, (), bodies)
         title = f"About {name}, ground axes" + (f", and about the axis {self.axis}" if self.axis else "")
         return self._step(title, "inertia_about", section, axis)
 
@@ -553,7 +511,8 @@ class _Report:
             if self.about is None:
                 raise UsageError(f"the axis {self.axis} goes through what point?", fix="write --about POINT")
             point = self._place(self.about)
-            return point, self.about, None if self.axis is None else (point, Matrix.IDENTITY["xyz".index(self.axis)])
+            along = Vector(int(axis == self.axis) for axis in AXES)
+            return point, self.about, None if self.axis is None else (point, along)
         first, comma, second = (part.strip() for part in self.axis.partition(","))
         if not comma:
             raise UsageError(f"'{self.axis}' is no axis", fix='write x, y or z, or two points: "A,B"')
@@ -578,7 +537,7 @@ class _Report:
 
 def together_mass(system: System, body: str) -> Any:
     """The mass of a body, its pieces added up."""
-    return InertiaSum.of_body(system.motion, body, {}).m
+    return InertiaAbout.of_body(system.motion, body, {}).sum.m
 
 
 def _conventions() -> Step:
@@ -638,5 +597,5 @@ def _axes(sketch: Sketch, body: str, rows: np.ndarray) -> Iterator[Mark]:
     turn = np.array([sketch.numbers(row[:2]) for row in pose.R[:2]])
     seen = {str(k): turn @ row[:2] for k, row in enumerate(rows, start=1)}
     half = {name: 0.45 * sketch.extent * along for name, along in seen.items() if np.linalg.norm(along) > 0.5}
-    yield from axis_marks(body, exact_vector(center), {name: exact_vector(v) for name, v in half.items()}, 0)
-    yield from center_marks([("C", exact_vector(center))], body)
+    yield from axis_marks(body, center, half, 0)
+    yield from center_marks([("C", center)], body)
