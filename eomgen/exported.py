@@ -141,6 +141,7 @@ class _Writing:
             place = place.then(Pose(R, Vector((relative[9], relative[10], relative[11]))))
         if axis:
             limits = {key: x for key, x in self.remarks[own[0].name].items() if key != "name"}
+            limits |= self._stops(link, own[0])
             kind = "revolute" if kind == "continuous" and "upper" in limits else kind
             inner = f'<axis xyz="{_words(axis)}"/>{_limit(kind, limits)}{self._effort(link)}{self._mimic(own[0].name)}'
         shift = Vector.ZERO if parent is None else parent.point
@@ -187,6 +188,27 @@ class _Writing:
             raise DerivationError("URDF has no screw", where, "take other joints")
         axis = turning if any(turning) else sliding
         return ("continuous" if any(turning) else "prismatic"), [factor * x for x in axis]
+
+    def _stops(self, link: BodyLink, q: Any) -> dict[str, str]:
+        """The limits of its coordinate, s = a + b q; restitution and stops that yield are left out."""
+        joint: Any = link.joint
+        given = getattr(joint, "limits", None)
+        if given is None:
+            return {}
+        for key in ("restitution", "stop"):
+            if getattr(joint, key) is not None:
+                self.left.setdefault(key, []).append(link.name)
+        made: dict[str, Any] = {k: x for k, x in self.system.scope.model.constraints.items() if x.about_joint}
+        own = {name: stop for name, stop in made.items() if stop.body == link.name}
+        ends = {stop.upper: stop.bound for stop in own.values()}
+        ends = ends or {upper: x for upper, x in ((False, given.low), (True, given.high)) if x is not None}
+        self.left.setdefault("", []).extend(own)
+        scalars = (substituted(link.s, {q: 0})[0], gradient(link.s[0], (q,))[0])
+        a, b, *bounds = self.numbers(
+            (*scalars, *map(self.system.scope.value, ends.values())), f"bodies.{link.name}.joint"
+        )
+        values = {upper != (b < 0): repr((x - a) / b + 0.0) for upper, x in zip(ends, bounds, strict=True)}
+        return {("upper" if upper else "lower"): x for upper, x in values.items()}
 
     def _effort(self, link: BodyLink) -> str:
         """Its damper and its dry friction of constant size; springs, rotors and other friction are left out."""

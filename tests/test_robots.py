@@ -94,7 +94,7 @@ def test_mass_matrix_and_bias_of_a_urdf_are_those_of_its_words(seed, tmp_path):
 
 
 def test_a_urdf_reads_as_a_person_would_write_it(tmp_path):
-    """Legal names beside the file's own, parts of pi, inertia in body axes, limits as remarks, motors as inputs."""
+    """Legal names beside the file's own, parts of pi, inertia in body axes, limits as stops, motors as inputs."""
     found = robot(tmp_path, ARM)
     arm, elbow = found.model.bodies["upper_arm"], found.model.bodies["fore"].joint
     assert arm.about == "link upper arm" and arm.joint.turned[0].angle.text == "pi/2"
@@ -104,7 +104,8 @@ def test_a_urdf_reads_as_a_person_would_write_it(tmp_path):
         "0",
         "0",
     ] and elbow.torque is None  # the default
-    assert found.model.coordinates["shoulder"].about == "from -1.5 to 2 rad, at most 30 N*m, at most 4 rad/s"
+    assert found.model.coordinates["shoulder"].about == "at most 30 N*m, at most 4 rad/s"
+    assert [arm.joint.limits.low.text, arm.joint.limits.high.text] == ["-1.5", "2"]
     assert found.model.constraints["mimic_elbow"].gap.text == "elbow + 2*shoulder - 0.25"
     assert found.model.bodies["tool"].mass is None and arm.joint.damping.text == "0.3"
 
@@ -312,7 +313,79 @@ def test_mjcf_means_what_mujoco_computes(tmp_path):
         J, constraint = numbers[n * n + 2 * n :].reshape(-1, n), data.efc_J.reshape(-1, n)[0][order]
         assert len(J) == 1 and abs(abs(J[0] @ constraint) - np.linalg.norm(J[0]) * np.linalg.norm(constraint)) < 1e-10
     assert equations.certify().ok
-    assert {each.what for each in found.left_out} == {"geoms that touch", "filters of motors", "softness of equalities"}
+    left = {"geoms that touch", "filters of motors", "softness of equalities", "softness of limits"}
+    assert {each.what for each in found.left_out} == left
+
+
+STOPS = """<robot name="stops"><link name="base"/><link name="a"/><link name="b"/><link name="c"/>
+<joint name="knee" type="revolute"><parent link="base"/><child link="a"/><limit lower="0" upper="2.5"/></joint>
+<joint name="shin" type="revolute"><parent link="a"/><child link="b"/><limit lower="-6" upper="1"/>
+  <mimic joint="knee" multiplier="-2" offset="0.5"/></joint>
+<joint name="lock" type="prismatic"><parent link="b"/><child link="c"/><limit lower="0" upper="0"/></joint></robot>"""
+
+
+def test_a_start_at_a_stop_is_moved_between_the_stops_and_what_follows_has_none_of_its_own(tmp_path):
+    """0 is no start between 0 and 2.5: 1.25, -2*1.25 + 0.5 of what follows; -2*[0, 2.5] + 0.5 is within [-6, 1]."""
+    found = robot(tmp_path, STOPS)
+    knee, shin, lock = (found.model.bodies[name].joint for name in "abc")
+    assert [x.text for x in (knee.limits.low, knee.limits.high)] == ["0", "2.5"] and shin.limits is lock.limits is None
+    starts = {q: part.start.text for q, part in found.model.coordinates.items() if part.start is not None}
+    assert starts == {"knee": "1.25", "shin": "-2"}
+    told = {each.what: each.where for each in found.left_out}
+    assert told == {"start beyond limits": ("knee",), "limits that leave no range": ("lock",)}
+    tighter = robot(tmp_path, STOPS.replace('lower="-6"', 'lower="-4"'))
+    assert ("shin",) in [each.where for each in tighter.left_out if each.what == "limits of joints that follow others"]
+    (tmp_path / "first.toml").write_text(found.text)
+    assert '"-6"' in urdf_of(tmp_path / "first.toml").text
+
+
+RUBBING = """<mujoco><worldbody><body><joint name="h" axis="0 1 0" ref="10" range="-20 90" frictionloss="0.4"/>
+<geom size="0.1" pos="0.3 0 0"/><body><joint name="p" type="slide" range="0.1 0.4"/><geom size="0.1"/></body></body>
+</worldbody></mujoco>"""
+
+
+@pytest.mark.slow
+@needs(".mujoco", what="mujoco")
+def test_stops_and_friction_losses_of_mujoco_are_those_of_joints(tmp_path):
+    """`range` less `ref`, `frictionloss`; what starts beyond is a remark, what yields is told; another one is seen."""
+    found = robot(tmp_path, RUBBING, "xml")
+    turn, slide = (body.joint for body in found.model.bodies.values())
+    assert [float(x.text) for x in (turn.limits.low, turn.limits.high)] == pytest.approx(
+        [np.radians(-30), np.radians(80)]
+    )
+    assert turn.friction.torque.text == "0.4" and slide.limits is None
+    assert found.model.coordinates["p"].about == "from 0.1 to 0.4 m"
+    told = {each.what: each.where for each in found.left_out}
+    assert told["softness of limits"] == told["softness of frictionloss"] == ("h",) and told["start beyond limits"] == (
+        "p",
+    )
+    path, left = str(tmp_path / "robot.xml"), [("start beyond limits", ("p",))]
+    assert mjcf_otherwise(path, RUBBING.encode(), found.model, None, left) == ""
+    assert "rubs with 0.4, not 0.5" in seen_in(tmp_path, "0.4", "0.5", found, left)
+    assert "stops" in seen_in(tmp_path, "-20", "-25", found, left)
+
+
+def seen_in(tmp_path: Any, old: str, new: str, found: Any, left: Any) -> str:
+    """Message of the second reading of a file about the model of another one."""
+    other = tmp_path / "other.xml"
+    other.write_text(RUBBING.replace(old, new))
+    return mjcf_otherwise(str(other), other.read_bytes(), found.model, None, left)
+
+
+SOFT = """<sdf version="1.9"><model name="m"><link name="base"/><link name="a"/>
+<joint name="stand" type="fixed"><parent>world</parent><child>base</child></joint>
+<joint name="j" type="revolute"><parent>base</parent><child>a</child><axis><xyz>0 1 0</xyz>
+<limit><lower>-1</lower><upper>1e16</upper><stiffness>500</stiffness><dissipation>3</dissipation></limit></axis></joint>
+</model></sdf>"""
+
+
+def test_stops_of_sdf_yield_where_it_gives_a_stiffness(tmp_path):
+    """<lower>, and no <upper>; <stiffness>, <dissipation>: `stop`; without them rigid."""
+    joint = robot(tmp_path, SOFT, "sdf").model.bodies["a"].joint
+    assert (joint.limits.low.text, joint.limits.high) == ("-1", None)
+    assert (joint.stop.stiffness.text, joint.stop.damping.text) == ("500", "3")
+    rigid = robot(tmp_path, SOFT.replace("<stiffness>500</stiffness><dissipation>3</dissipation>", ""), "sdf")
+    assert rigid.model.bodies["a"].joint.stop is None and list(rigid.model.constraints) == ["a_low"]
 
 
 ONES = """<mujoco><worldbody><body><freejoint name="fly"/><geom size="0.1"/>
@@ -523,13 +596,13 @@ FOLLOWING = """<robot name="constraint"><link name="base"/>
 
 
 def test_names_limits_motors_and_a_base_that_stands_come_back(tmp_path):
-    """URDF -> TOML -> URDF -> TOML: the same text, its names and limits in remarks, and no world more; of two
+    """URDF -> TOML -> URDF -> TOML: the same text, its names in remarks, limits as stops, and no world more; of two
     coordinates in a constraint the one without a motor follows, though it comes first."""
     first = robot(tmp_path, FOLLOWING)
     (tmp_path / "first.toml").write_text(first.text)
     (tmp_path / "again.urdf").write_text(urdf_of(tmp_path / "first.toml").text)
     second = imported(tmp_path / "again.urdf")
-    assert 'about = "joint s.1, from -1 to 1e-1 rad, at most 3.5 N*m, at most 2 rad/s"' in first.text
+    assert 'about = "joint s.1, at most 3.5 N*m, at most 2 rad/s"' in first.text and "limits = [-1, 0.1]" in first.text
     assert second.text.partition("\n")[2] == first.text.partition("\n")[2] and not second.left_out
 
 
@@ -684,7 +757,7 @@ def test_what_an_mjcf_robot_leaves_out_is_there(tmp_path):
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs pipes of POSIX")
 @pytest.mark.parametrize("kind", ["urdf", "sdf", pytest.param("xml", marks=needs(".mujoco", what="mujoco"))])
 def test_a_robot_that_comes_through_a_pipe_is_read_once_and_looked_at_as_a_file_is(tmp_path, monkeypatch, kind):
-    """What the second reading reads is what was read."""
+    """Message of the second reading reads is what was read."""
     text = {"urdf": ARM, "sdf": SDF_ARM, "xml": MJCF_ARM}[kind]
     pipe = tmp_path / f"robot.{kind}"
     os.mkfifo(pipe)

@@ -109,7 +109,7 @@ class Connections:
             if joint is None:
                 continue
             for k, field, law in joint.frictions:
-                free = getattr(joint, field).names & self.coordinates.keys() - given
+                free = joint.variable_of(field).names & self.coordinates.keys() - given
                 if law.smooth is None and free:
                     name = joint.named_contact(body, field)
                     loaded = law.coulomb is not None

@@ -489,3 +489,15 @@ class PlanarLimits(Part):
     x: SlideLimits | None = None
     y: SlideLimits | None = None
     angle: AngleLimits | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class TurnsLimits(Part):
+    """Limits of what turns one axis after the other.
+
+    Args:
+        angles: [least, largest] of each angle, in the unit of its coordinate [rad].
+    """
+
+    title: ClassVar[str] = "limits"
+    angles: Annotated[tuple[Limits, ...], ListRule(LimitsRule(FormulaRule("rad", in_own_unit=True)), 2, 3)]

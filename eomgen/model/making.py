@@ -336,9 +336,8 @@ def with_limits(model: Any) -> Any:
     for body, part in (model.bodies or {}).items():
         joint: Any = None if part is None else part.joint
         for k, field, limits in () if joint is None else joint.limits_of_variables:
-            variable = getattr(joint, field)
-            unit = _unit_of(model, variable)
-            several = f"{body}_{field}" if len(joint.limited) > 1 else body
+            unit = _unit_of(model, joint.variable_of(field))
+            several = joint.named_contact(body, field)
             for end in ("low", "high"):
                 bound = getattr(limits, end)
                 if bound is not None:
@@ -468,7 +467,7 @@ def _with_stop(model: Any, joint: Any) -> Any:
     law, limits = getattr(joint, "stop", None), getattr(joint, "limits", None)
     if law is None or limits is None or limits.in_si:
         return joint
-    unit = _unit_of(model, getattr(joint, joint.limited[0]))
+    unit = _unit_of(model, joint.variable_of(joint.limited[0]))
     low, high = (None if x is None else in_si(x, unit) for x in (limits.low, limits.high))
     return joint.altered(limits=replace(limits, low=low, high=high, in_si=True))
 

@@ -129,7 +129,10 @@ class _Seen:
 
     @property
     def _most(self) -> float:
-        return float(np.nanmax(np.abs(self._columns[1]), initial=0.0))
+        """The largest force or couple of the phase; of what moves freely T over 1 rad or 1 m."""
+        t, x = self.track
+        T = self.model.functions.energies.many(t, self.model.functions.inner(x), self.model.p)[:, 0]
+        return max(float(np.nanmax(np.abs(self._columns[1]), initial=0.0)), float(np.max(T, initial=0.0)))
 
     def _normals(self, contact: Contact) -> np.ndarray:
         """Components of the normal force, k x n; none of a joint with friction of constant size."""

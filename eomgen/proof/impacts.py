@@ -148,9 +148,16 @@ def _numbers(scalars: tuple[Scalar, ...], state: State) -> list[Any]:
 def _leaves_otherwise(found: ImpactEquations, state: State, after: Mapping[Node, Any]) -> str:
     """Message that names a row which leaves with another velocity than its law says; "".
 
-    The velocities are those of the rows themselves, not J u + sigma.
+    The velocities are those of the rows themselves, not J u + sigma; of what closes the growth of its gap.
     """
+    model = found.system.scope.model
     for row in found.rows:
+        squares = model.constraints[row.row.constraint].by_squares if row.row.constraint in model.constraints else True
+        if row.e is not None and row.row.gap is not None and not squares:
+            grows = found.system.scope.time_derivative((row.row.gap,))[0]
+            v, rate = _numbers((row.row.velocity, grows), state)
+            if abs(v - rate) > tolerances.ZERO_AT_50 * (1 + abs(rate)):
+                return f"its impulse acts along {float(v):.10g}, its gap grows by {float(rate):.10g}"
         before, later = (_numbers((row.row.velocity,), {**state, **x})[0] for x in ({}, _later(found, after)))
         due = 0 if row.e is None else -_numbers((row.e,), state)[0] * before
         if abs(later - due) > tolerances.ZERO_AT_50 * (1 + abs(before)):

@@ -330,14 +330,15 @@ def _angles(joint: Joint) -> tuple[str, ...]:
 
 
 UNLIMITED = 1e9  # written where a format needs a limit and there is none
-LIMITS = {  # as in the remark of a coordinate
+LIMITS = {  # as in the remark of a coordinate, which has those of joints without stops
     "lower": re.compile(r"from (\S+) to "),
     "upper": re.compile(r"from \S+ to (\S+) "),
     "effort": re.compile(r"at most (\S+) N(?:\*m)?(?=,|$)"),
     "velocity": re.compile(r"at most (\S+) (?:rad|m)/s"),
 }
 G = (0.0, 0.0, -9.81)  # gravity of programs that read URDF [m/s^2]
-EXACT = ("forces", "stiffness", "armature", "given motions")  # of which nothing else is reported as left out
+# of which nothing else is reported as left out
+EXACT = ("forces", "stiffness", "armature", "restitution", "stop", "given motions")
 TURNING, SLIDING = ("revolute", "continuous"), ("prismatic",)
 
 
@@ -376,6 +377,8 @@ def unsaid_otherwise(text: str, model: Model, left_out: Mapping[str, Collection[
         "forces": [name for name in acts if name not in fields or not usual],
         "stiffness": [name for name, each in pushes.items() if any(x.stiffness is not None for x in each)],
         "armature": [name for name, each in pushes.items() if any(x.armature is not None for x in each)],
+        "restitution": [name for name, part in model.bodies.items() if getattr(part.joint, "restitution", None)],
+        "stop": [name for name, part in model.bodies.items() if getattr(part.joint, "stop", None)],
         "friction": [name for name, each in pushes.items() if any(_is_beyond(x.friction) for x in each)],
         "values of inputs": [name for name, part in model.inputs.items() if _given(posed, part.value)],
         "start values": [x for x, part in q.items() if _given(posed, part.start) or _given(posed, part.speed)],
@@ -383,7 +386,10 @@ def unsaid_otherwise(text: str, model: Model, left_out: Mapping[str, Collection[
     }
     drives = [name for name, each in pushes.items() if any(x.push is not None for x in each)]
     said = {
-        "constraints": ([*model.constraints], sum(1 for _ in root.iter("mimic"))),
+        "constraints": (
+            [name for name, x in model.constraints.items() if not x.about_joint],  # stops: `bounded`
+            sum(1 for _ in root.iter("mimic")),
+        ),
         "drives that are no input alone": (drives, sum(1 for _ in root.iter("transmission"))),
     }
     for what, names in due.items():
@@ -489,12 +495,15 @@ class _ImportedUrdf:
         return ""
 
     def bounded(self, joint: Element) -> str:
-        """Limits of a hinge or slide, as the remark of its coordinate says."""
+        """Limits of a hinge or slide, as its stops or the remark of its coordinate say."""
         q, limit = self.coordinate(joint), joint.find("limit")
         if q is None:
             return ""
         about = self.model.coordinates[q].about or ""
         reported = {key: x.findall(about) for key, x in LIMITS.items()}
+        stops = dict(zip(("lower", "upper"), self.posed.stops(self.body(_named(joint, "child")) or ""), strict=True))
+        if any(map(math.isfinite, stops.values())):
+            reported |= {key: [max(-UNLIMITED, min(UNLIMITED, x))] for key, x in stops.items()}
         due: dict[str, float] = {}
         if limit is not None:
             ends = [] if joint.get("type") == "continuous" else [key for key in ("lower", "upper") if limit.get(key)]

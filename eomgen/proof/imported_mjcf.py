@@ -8,7 +8,7 @@ at positions and speeds that are nothing special, every input 0.7: MuJoCo comput
 from __future__ import annotations
 
 import importlib
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -27,10 +27,12 @@ FIXED, AFFINE = 0, 1  # of its gain and bias
 OTHER_THINGS = "motors on other things than joints, tendons between two places, and sites"
 NO_LAWS, OFF, STANDING = "motors that are no linear laws", "motors that are switched off", "motors on the ground"
 LIMITS = ("actuator_ctrl", "actuator_force", "actuator_act", "jnt_actfrc", "tendon_actfrc")
+UNLIMITED = ("start beyond limits", "limits that leave no range")
 PUSHED = 0.7  # of every input
 # left out; they act by constraints of MuJoCo alone, which are in none of the forces that are compared
 OF_CONSTRAINTS = (
-    *("limits of joints", "limits of tendons", "limits of free and ball joints", "limits of motors", "frictionloss"),
+    *("limits of tendons", "limits of free and ball joints", "limits of motors", "softness of frictionloss"),
+    *("softness of limits", "start beyond limits", "limits that leave no range"),
     *("geoms that touch", "pairs of geoms that touch", "friction of free and ball joints", "inputs of motors"),
     *("softness of equalities", "equalities that are switched off", "motion of a mocap body"),
 )
@@ -61,7 +63,9 @@ def mjcf_otherwise(
     push = PUSHED if not more else 0.0 if more == {DELAYS} else None
     left = proof.lacks(left_out)  # they are silenced before forces are compared
     forces = () if equations is None else proof.accelerates(equations, push)
-    return first_wrong((*left, *proof.has([what for what, _ in left_out]), *proof.stands(), *proof.weighs(), *forces))
+    free = {name for what, names in left_out if what in UNLIMITED for name in names}
+    own = (*proof.has([what for what, _ in left_out]), *proof.holds(free))
+    return first_wrong((*left, *own, *proof.stands(), *proof.weighs(), *forces))
 
 
 class _Compiled:
@@ -151,11 +155,37 @@ class _Compiled:
             "tendons through places": (m.wrap_type != JOINT_WRAP).any(),
             "limits of motors": any(limited.any() for limited in self._limits()),
             "limits of tendons": m.tendon_limited.any(),
-            "limits of joints": m.jnt_limited.any(),
-            "frictionloss": m.dof_frictionloss.any(),
+            "softness of limits": m.jnt_limited.any(),
+            "start beyond limits": m.jnt_limited.any(),
+            "softness of frictionloss": m.dof_frictionloss.any(),
             "pairs of geoms that touch": m.npair,
         }
         yield from (f"'{what}' are left out, and there are none" for what in left_out if not there.get(what, True))
+
+    def holds(self, unlimited: Collection[str]) -> Iterator[str]:
+        """Limits and friction losses of hinges and slides.
+
+        Args:
+            unlimited: coordinates that are said to have no stops here.
+        """
+        m = self.m
+        limited = m.jnt_limited * (not self._off("LIMIT") and not self._off("CONSTRAINT"))
+        rubs = m.dof_frictionloss * (not self._off("FRICTIONLOSS") and not self._off("CONSTRAINT"))
+        joints = {name: part.joint for name, part in self.model.bodies.items() if part.joint is not None}
+        for j in range(m.njnt):
+            q = self.posed.coordinates.get(m.joint(j).name or f"joint{j}")
+            ways = {body: joint.variables("space") for body, joint in joints.items()}
+            own = [body for body, way in ways.items() if any(q in x.names for x in way)]
+            if m.jnt_type[j] in (FREE, BALL) or len(own) != 1:
+                continue
+            offset = float(m.qpos0[m.jnt_qposadr[j]])
+            due = m.jnt_range[j] - offset if limited[j] and q not in unlimited else np.array([-np.inf, np.inf])
+            here = self.posed.stops(own[0])
+            same = np.allclose(here, due, atol=tolerances.COMPUTED)
+            yield "" if same else f"'{q}' has stops at {list(here)}, not at {list(due)}"
+            size = next((self.posed.number(law.size) for _, _, law in joints[own[0]].frictions), 0.0)
+            off = abs(size - rubs[m.jnt_dofadr[j]]) > tolerances.COMPUTED * (1 + abs(size))
+            yield f"'{q}' rubs with {size:.9g}, not {rubs[m.jnt_dofadr[j]]:.9g}" if off else ""
 
     def _off(self, flag: str) -> bool:
         return bool(self.m.opt.disableflags & int(getattr(self.mujoco.mjtDisableBit, f"mjDSBL_{flag}")))

@@ -105,6 +105,16 @@ class PosedModel:
         found[1:4] *= found[0]
         return found
 
+    def stops(self, body: str) -> tuple[float, float]:
+        """The least and the largest value of the one variable of a body's joint, infinite where there is none."""
+        stops: list[Any] = [x for x in self.model.constraints.values() if x.about_joint]
+        ends = {x.upper: x.bound for x in stops if x.body == body}
+        joint: Any = self.model.bodies[body].joint
+        if getattr(joint, "stop", None) is not None:
+            ends = {False: joint.limits.low, True: joint.limits.high}
+        low, high = (ends.get(upper) for upper in (False, True))
+        return -math.inf if low is None else self.number(low), math.inf if high is None else self.number(high)
+
     def follows(self) -> Iterator[str]:
         """Messages of equations between coordinates, from `mimic` of an import, that do not hold."""
         for name, constraint in self.model.constraints.items():

@@ -34,10 +34,13 @@ from eomgen.robots.mjcf_acting import (
 )
 from eomgen.robots.sdf_models import LARGEST
 from eomgen.robots.tables import (
+    NO_RANGE,
+    STARTS_BEYOND,
     ZERO,
     Entries,
     Imported,
     Moved,
+    Range,
     Seat,
     decimal_of_double,
     decimal_text,
@@ -81,7 +84,9 @@ def _switched(m: Any) -> Any:
         ("DAMPER", dampers),
         ("PASSIVE", springs + dampers),  # so before MuJoCo 3.4
         ("EQUALITY", (m.eq_active0,)),
-        ("CONSTRAINT", (m.eq_active0,)),
+        ("LIMIT", (m.jnt_limited, m.tendon_limited)),
+        ("FRICTIONLOSS", (m.dof_frictionloss,)),
+        ("CONSTRAINT", (m.eq_active0, m.jnt_limited, m.tendon_limited, m.dof_frictionloss)),
     ):
         if m.opt.disableflags & int(getattr(mujoco.mjtDisableBit, f"mjDSBL_{flag}", 0)):
             for each in values:
@@ -170,10 +175,8 @@ def _joint(r: CompiledRobot, j: int) -> Moved:
     unit = "rad" if turns else "m"
     reference = decimal_of_double(m.qpos0[m.jnt_qposadr[j]])
     remark = [f"joint {m.joint(j).name}"] if m.joint(j).name not in ("", q) else []
-    if m.jnt_limited[j]:
-        low, high = (decimal_of_double(round(x, 6)) for x in m.jnt_range[j])
-        remark.append(f"from {low.normalize():f} to {high.normalize():f} {unit}")
     begun = decimal_of_double(r.start[m.jnt_qposadr[j]])
+    stops = _stops(r, j, begun, unit, remark).moved(-reference).limits()
     start = {"start": begun} if begun else {}
     said = {"about": ", ".join(remark)} if remark else {}
     r.found["coordinates"][q] = {**start, "unit": unit, **said}
@@ -186,7 +189,24 @@ def _joint(r: CompiledRobot, j: int) -> Moved:
     }
     if j in r.drives:
         keys["torque" if turns else "force"] = " + ".join(r.drives[j]).replace("+ -", "- ")
-    return Moved({**keys, **_efforts(r, j, reference)}, pivot if turns else decimals([0, 0, 0]), q)
+    return Moved({**keys, **_efforts(r, j, reference), **stops}, pivot if turns else decimals([0, 0, 0]), q)
+
+
+def _stops(r: CompiledRobot, j: int, begun: Decimal, unit: str, remark: list[str]) -> Range:
+    """The range of a hinge or slide; where the start is on or beyond its limits they are a remark."""
+    if not r.m.jnt_limited[j]:
+        return Range()
+    own = Range(*(decimal_of_double(x) for x in r.m.jnt_range[j]))
+    q, short = r.joint[j], Range(*(decimal_of_double(round(x, 6)) for x in r.m.jnt_range[j]))
+    if own.empty:
+        r.leave(NO_RANGE, [q], "the upper one is not above the lower one")
+    elif not own.holds(begun):
+        r.leave(STARTS_BEYOND, [q], "it starts on or beyond one of them, and MuJoCo pushes it back")
+    else:
+        r.leave("softness of limits", [q], "stops are rigid; those of MuJoCo yield by solref and solimp")
+        return own
+    remark += short.remark(unit)
+    return Range()
 
 
 def _efforts(r: CompiledRobot, j: int, reference: Decimal) -> Entries:
@@ -210,7 +230,8 @@ def _efforts(r: CompiledRobot, j: int, reference: Decimal) -> Entries:
         low, high = m.jnt_actfrcrange[j]
         r.leave("limits of motors", [f"all at {q} ({low:g} to {high:g})"], "an input has none")
     if m.dof_frictionloss[d]:
-        r.leave("frictionloss", [q], "a loss that yields a little where it sticks")
+        keys["friction"] = {"torque" if m.jnt_type[j] == HINGE else "force": decimal_of_double(m.dof_frictionloss[d])}
+        r.leave("softness of frictionloss", [q], "it holds where it sticks; that of MuJoCo yields a little")
     return keys
 
 

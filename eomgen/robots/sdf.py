@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import field
 from decimal import Decimal
+from functools import partial
 from typing import Any
 
 from eomgen.errors import ModelError
@@ -21,9 +22,13 @@ from eomgen.robots.tables import (
     ZERO,
     Entries,
     Imported,
+    LeftOut,
     LegalNames,
+    Mimic,
     Moved,
+    Range,
     Seat,
+    add_left_out,
     computed,
     decimals,
     gap,
@@ -31,6 +36,7 @@ from eomgen.robots.tables import (
     in_file,
     quaternion_of,
     reported_left,
+    started_within,
     turn_of,
     without_empty,
 )
@@ -41,6 +47,7 @@ from eomgen.symbolic.expression import Matrix, Pose, Vector
 ONE_AXIS = {"revolute": "rad", "continuous": "rad", "prismatic": "m", "screw": "rad"}
 TWO_AXES = ("universal", "revolute2")
 KINDS = (*ONE_AXIS, *TWO_AXES, "fixed", "ball")
+SOFT = {"stiffness": "stiffness", "dissipation": "damping"}  # of the stops of a joint
 ENDLESS = Decimal(10) ** 15  # a limit beyond it is none
 STANDARD = "0 0 -9.8"  # gravity, where the file says nothing
 WHY = LEFT_OUT | {
@@ -72,16 +79,16 @@ def sdf(data: bytes, name: str, wanted: str | None = None) -> Imported:
         each.element.seen = True
         each.element.children, each.element.read = [], {*each.element.attributes}
     reported = [reported_left("model", names, "another of the file's models")] if others else []
-    return Imported(found, (*reported, *left_out(root, WHY)))
+    return Imported(found.tables, (*reported, *left_out(root, WHY), *found.left_out))
 
 
-def _first_that_moves(every: list[SdfChoice]) -> tuple[SdfChoice, Entries]:
+def _first_that_moves(every: list[SdfChoice]) -> tuple[SdfChoice, Imported]:
     """First model that is not static, else the first one; an include of a missing file is skipped.
 
     Raises:
         ModelError: of the first one, where nothing can be read.
     """
-    first: tuple[SdfChoice, Entries] | None = None
+    first: tuple[SdfChoice, Imported] | None = None
     missing: ModelError | None = None
     for choice in every:
         try:
@@ -91,7 +98,7 @@ def _first_that_moves(every: list[SdfChoice]) -> tuple[SdfChoice, Entries]:
                 raise
             missing = missing or error
             continue
-        if found[1].get("coordinates"):
+        if found[1].tables.get("coordinates"):
             return found
         first = first or found
     if first is None:
@@ -100,7 +107,7 @@ def _first_that_moves(every: list[SdfChoice]) -> tuple[SdfChoice, Entries]:
     return first
 
 
-def _tables(choice: SdfChoice) -> tuple[SdfChoice, Entries]:
+def _tables(choice: SdfChoice) -> tuple[SdfChoice, Imported]:
     gravity = choice.gravity
     acceleration = gravity.value(3) if gravity is not None else decimals(STANDARD.split())
     return choice, _Reading.of(choice.flat()).tables(acceleration)
@@ -113,6 +120,8 @@ class _Reading:
     Args:
         above: of each link the joint by which it hangs.
         coordinate, second: of each joint the name of its coordinate, and of that of a second axis.
+        ranges: between the limits of each coordinate.
+        follows: the coordinates that follow others.
         weightless: bodies on which gravity does not act.
     """
 
@@ -128,6 +137,8 @@ class _Reading:
     second: dict[str, str] = field(default_factory=dict)
     weightless: set[str] = field(default_factory=set)
     found: Entries = field(default_factory=dict)
+    ranges: dict[str, Range] = field(default_factory=dict)
+    follows: dict[str, Mimic] = field(default_factory=dict)
 
     @classmethod
     def of(cls, flat: FlatModel) -> _Reading:
@@ -158,13 +169,15 @@ class _Reading:
     def model(self) -> XmlElement:
         return self.flat.model
 
-    def tables(self, gravity: Any) -> Entries:
+    def tables(self, gravity: Any) -> Imported:
         keys = ("coordinates", "speeds", "inputs", "bodies", "constraints")
         self.found = {key: {} for key in keys}
         static = self.model.one("static")
         fixed = static is not None and static.text in YES
         for link in self._ordered():
             self._link(link, fixed)
+        reported: list[LeftOut] = []
+        started_within(self.found["coordinates"], partial(add_left_out, reported), self.ranges, self.follows)
         g = self.names.new("g")
         weight: Entries = {"kind": "gravity", "acceleration": [0, 0, f"-{g}"]}
         parameters: Entries = {g: {"value": -gravity[2], "unit": "m/s^2"}}
@@ -177,7 +190,8 @@ class _Reading:
                 x for x, body in self.found["bodies"].items() if "mass" in body and x not in self.weightless
             ]
         forces = {"forces": {"weight": weight}} if any(gravity) and weight.get("bodies") != [] else {}
-        return {**head, **without_empty({"parameters": parameters, **self.found}), **forces}
+        tables = {**head, **without_empty({"parameters": parameters, **self.found}), **forces}
+        return Imported(tables, tuple(reported))
 
     def _end(self, joint: XmlElement, tag: str) -> str:
         """The link that a joint names, or that a frame is attached to which it names."""
@@ -320,10 +334,14 @@ class _Reading:
             if pitch is None:
                 raise ModelError(f"screw '{raw}' has no <screw_thread_pitch>", joint.where, "give it in m a turn")
             keys["pitch"] = f"{pitch.value()[0]}/(2*pi)"
-        about += self._limit(element.one("limit"), unit)
-        self.found["coordinates"][q] = {"unit": unit, **({"about": ", ".join(about)} if about else {})}
+        self.found["coordinates"][q] = {"unit": unit}
         mimic = element.one("mimic")
-        if mimic is None or not self._mimic(q, mimic):
+        follows = mimic is not None and self._mimic(q, mimic)
+        stops, said = self._limit(element.one("limit"), unit, q, follows)
+        about += said
+        self.found["coordinates"][q] |= {"about": ", ".join(about)} if about else {}
+        keys |= stops
+        if not follows:
             effort = self.names.new(f"{'F' if unit == 'm' else 'tau'}_{q}")
             self.found["inputs"][effort] = {"value": 0, "unit": "N" if unit == "m" else "N*m"}
             keys["force" if unit == "m" else "torque"] = effort
@@ -360,19 +378,24 @@ class _Reading:
         R = self._pose(child).inverse().then(self._pose(frame)).R
         return in_file(R @ axis)
 
-    def _limit(self, limit: XmlElement | None, unit: str) -> list[str]:
-        """Limits as remarks."""
+    def _limit(self, limit: XmlElement | None, unit: str, q: str, follows: bool) -> tuple[Entries, list[str]]:
+        """(stops of a joint, remarks): rigid ones, or with the stiffness and damping that the file gives."""
+        self.ranges[q] = Range()
         if limit is None:
-            return []
+            return {}, []
         found = {tag: limit.one(tag) for tag in ("lower", "upper", "effort", "velocity")}
         values = {tag: _finite(element) for tag, element in found.items() if element is not None}
-        low, high = (values.get(tag) for tag in ("lower", "upper"))
-        said = [f"from {low} to {high} {unit}"] if low is not None and high is not None else []
+        own = self.ranges[q] = Range(values.get("lower"), values.get("upper"))
+        stops = {} if follows else own.limits()
+        said = own.remark(unit) if not stops else []
+        soft = {key: limit.one(tag) for tag, key in SOFT.items()} if stops else {}
+        if soft and soft["stiffness"] is not None:
+            stops["stop"] = {key: x.value()[0] for key, x in soft.items() if x is not None and x.value()[0]}
         force = "N" if unit == "m" else "N*m"
         for tag, of in (("effort", force), ("velocity", f"{unit}/s")):
             if (most := values.get(tag)) is not None and most >= 0:
                 said.append(f"at most {most} {of}")
-        return said
+        return stops, said
 
     def _dynamics(self, dynamics: XmlElement | None, effort: str) -> Entries:
         """Dampers, springs and dry friction."""
@@ -404,8 +427,7 @@ class _Reading:
         factor, offset, reference = (Decimal(0) if x is None else x.value()[0] for x in tags.values())
         constant = offset - factor * reference
         same = ONE_AXIS.get(str(kind), "rad") == self.found["coordinates"][q]["unit"]
-        if constant:
-            self.found["coordinates"][q]["start"] = constant
+        self.follows[q] = Mimic(other, factor, constant)
         self.found["constraints"][self.bodies.new(f"mimic_{q}")] = {
             "kind": "equation",
             "gap": gap(q, [(-factor, other)], -constant, weighed=not same),

@@ -6,7 +6,7 @@ import json
 import re
 import sys
 import textwrap
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import field
 from decimal import Context, Decimal, localcontext
 from typing import Any
@@ -197,13 +197,17 @@ Entries = dict[str, Any]
 NO_COUNTERPART = "eomgen has no counterpart"
 SLIDING = 'torque or force of the joint, with "- f*tanh(rate/small)": it slides, and creeps where it would stick'
 IN_SPACE = "a [forces] `couple` in axes of the body, by its quaternion and `omega`"
+STARTS_BEYOND = "start beyond limits"
+FOLLOWS = "limits of joints that follow others"
+NO_RANGE = "limits that leave no range"
 LAW = "a formula with max and min in the motor's force"
 NEAREST = {  # nearest counterpart in a model of a thing that changes the motion and cannot be imported
     "collision": "`rolling` or `support` in [constraints]; a push by max(0, depth) in [forces]",
     "geoms that touch": "`rolling` or `support` in [constraints]; a push by max(0, depth) in [forces]",
     "pairs of geoms that touch": "`rolling` or `support` in [constraints]; a push by max(0, depth) in [forces]",
     "friction": SLIDING,
-    "frictionloss": "`friction = { torque = f }` of the joint, which sticks and slips",
+    "softness of frictionloss": "the joint's `friction`, with `smooth`",
+    "softness of limits": "`stop = { stiffness, damping }` of the joint",
     "motion of a mocap body": "a `motion` of coordinates of a joint",
     "springs and dampers that are not linear": "the law as the joint's torque or force",
     "yielding springs of free and ball joints": IN_SPACE,
@@ -213,8 +217,9 @@ NEAREST = {  # nearest counterpart in a model of a thing that changes the motion
     "dampers that are not linear of free and ball joints": IN_SPACE,
     "limits of motors": LAW,
     "limits of tendons": "a `potential` of max(0, length - limit)^2",
-    "limits of joints": "`limits` of the joint, or a `potential` of max(0, q - limit)^2",
-    "limit": "`limits` of the joint, or a `potential` of max(0, q - limit)^2",
+    STARTS_BEYOND: "--start; `limits` of the joint, and a start between them",
+    FOLLOWS: "`limits` of the joint",
+    NO_RANGE: "a joint of the kind `fixed`",
     "filters of motors": "an activation that the caller computes; a coordinate with its own rate",
     "delays of motors": "an input that comes later",
     "inputs of motors": "none is needed",
@@ -275,6 +280,12 @@ class LeftOut:
 def reported_left(what: str, where: Iterable[str], why: str = NO_COUNTERPART) -> LeftOut:
     """Thing of a robot's file that is left out, with its nearest counterpart in a model."""
     return LeftOut(what, tuple(where), why, NEAREST.get(what))
+
+
+def add_left_out(reported: list[LeftOut], what: str, where: Sequence[str], why: str) -> None:
+    """Adds a thing that is left out, where there is one."""
+    if where:
+        reported.append(reported_left(what, where, why))
 
 
 @dataclass(frozen=True)
@@ -364,6 +375,87 @@ def hung(name: str, body: Entries, seat: Seat, joints: Sequence[Moved], names: L
         found[frame] = own
         seat = Seat(frame)
     return found
+
+
+@dataclass(frozen=True)
+class Range:
+    """The values of a joint's variable between rigid stops; None where there is none."""
+
+    low: Decimal | None = None
+    high: Decimal | None = None
+
+    @property
+    def ends(self) -> bool:
+        return self.low is not None or self.high is not None
+
+    @property
+    def empty(self) -> bool:
+        return self.low is not None and self.high is not None and not self.low < self.high
+
+    def holds(self, x: Decimal) -> bool:
+        """True if x is between the stops, and at none."""
+        return (self.low is None or self.low < x) and (self.high is None or x < self.high)
+
+    @property
+    def middle(self) -> Decimal:
+        """A value between the stops."""
+        if self.low is not None and self.high is not None:
+            return (self.low + self.high) / 2
+        return self.low + 1 if self.low is not None else ZERO if self.high is None else self.high - 1
+
+    def moved(self, shift: Decimal) -> Range:
+        """Range of a variable that is larger by so much."""
+        return Range(*(None if x is None else x + shift for x in (self.low, self.high)))
+
+    def within(self, other: Range, factor: Decimal) -> bool:
+        """True if factor times each value of another range is in this one."""
+        ends = [(x.low, x.high) for x in (self, other)]
+        (low, high), (least, most) = ends if factor > 0 else [ends[0], ends[1][::-1]]
+        above = low is None or (least is not None and low <= factor * least)
+        return above and (high is None or (most is not None and factor * most <= high))
+
+    def limits(self) -> Entries:
+        """The field of a joint."""
+        ends = ["-inf" if self.low is None else self.low, "inf" if self.high is None else self.high]
+        return {"limits": ends} if self.ends and not self.empty else {}
+
+    def remark(self, unit: str) -> list[str]:
+        """The words for a coordinate whose joint has no `limits`."""
+        low, high = (
+            f"{sign}{UNLIMITED}" if x is None else decimal_text(x) for x, sign in ((self.low, "-"), (self.high, ""))
+        )
+        return [f"from {low} to {high} {unit}"] if self.ends else []
+
+
+def started_within(
+    found: Entries, left: Callable[..., None], ranges: Mapping[str, Range], follows: Mapping[str, Mimic]
+) -> None:
+    """Starts of coordinates strictly between their limits, others follow; what follows another has no stops of its own.
+
+    Args:
+        left: takes what is told, where and why.
+    """
+    moved = [q for q, own in ranges.items() if q not in follows and own.ends and not own.empty and not own.holds(ZERO)]
+    for q in moved:
+        found[q] = {**found[q], "start": ranges[q].middle}
+    for _ in follows:  # what follows a follower comes after it
+        for q, mimic in follows.items():
+            start = mimic.offset + mimic.factor * found[mimic.leader].get("start", ZERO)
+            if start or "start" in found[q]:
+                found[q] = {**found[q], "start": start}
+    left(STARTS_BEYOND, moved, "0 is on or beyond a limit: it starts between them")
+    tighter = [q for q, x in follows.items() if not ranges[q].moved(-x.offset).within(ranges[x.leader], x.factor)]
+    left(FOLLOWS, tighter, "the joint that it follows has the stops")
+    left(NO_RANGE, [q for q, own in ranges.items() if own.empty], "the upper one is not above the lower one")
+
+
+@dataclass(frozen=True)
+class Mimic:
+    """A coordinate that follows another one: factor times it, and an offset."""
+
+    leader: str
+    factor: Decimal
+    offset: Decimal
 
 
 def remarked(about: str | None) -> dict[str, str]:

@@ -6,9 +6,10 @@ is x. A joint that mimics another is one of its own, with the equation between t
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import field
 from decimal import Decimal
+from functools import partial
 from typing import Any
 
 from eomgen.errors import ModelError
@@ -23,8 +24,11 @@ from eomgen.robots.tables import (
     Imported,
     LeftOut,
     LegalNames,
+    Mimic,
     Moved,
+    Range,
     Seat,
+    add_left_out,
     computed,
     decimals,
     gap,
@@ -34,6 +38,7 @@ from eomgen.robots.tables import (
     reported_left,
     roll_pitch_yaw,
     six,
+    started_within,
     tensor_of,
     without_empty,
 )
@@ -134,6 +139,8 @@ class _Reading:
         above: of each link the joint by which it hangs.
         coordinates, bodies: the legal names, of joints and of links.
         rotors: inertia that motors behind gears add, by joint.
+        ranges: between the limits of each coordinate.
+        follows: the coordinates that follow others.
     """
 
     robot: XmlElement
@@ -145,6 +152,8 @@ class _Reading:
     body: Mapping[str, str]
     coordinate: Mapping[str, str]
     rotors: dict[str, Decimal] = field(default_factory=dict)
+    ranges: dict[str, Range] = field(default_factory=dict)
+    follows: dict[str, Mimic] = field(default_factory=dict)
 
     @classmethod
     def of(cls, robot: XmlElement) -> _Reading:
@@ -181,12 +190,14 @@ class _Reading:
         driven = self._driven()
         for link in ordered:
             self._add(found, link, floating and link in roots, driven)
+        reported: list[LeftOut] = []
+        started_within(found["coordinates"], partial(add_left_out, reported), self.ranges, self.follows)
         g = self.names.new("g")
         weight = {**GRAVITY, "acceleration": [0, 0, f"-{g}"]}
         head = {"eomgen": 1, "name": title, "space": "space"}
         parameters = {g: {"value": Decimal("9.81"), "unit": "m/s^2"}}
         tables = {**head, "parameters": parameters, **without_empty(found), "forces": {"weight": weight}}
-        return Imported(tables, left_out(self.robot, LEFT_OUT))
+        return Imported(tables, (*left_out(self.robot, LEFT_OUT), *reported))
 
     def _below(self, root: str) -> list[str]:
         """Reads a link and all links below it, each after its parent."""
@@ -263,16 +274,19 @@ class _Reading:
         return [self._one_axis(found, raw, joint, axis, driven)]
 
     def _one_axis(self, found: Entries, raw: str, joint: XmlElement, axis: Vector, driven: bool) -> Moved:
-        """A hinge or a slide, its coordinate with its limits as a remark, its motor and its damper."""
+        """A hinge or a slide, its coordinate, its limits, its motor and its damper."""
         q, kind = self.coordinate[raw], _need_kind(joint)
         unit = ONE_AXIS[kind]
         turns = unit == "rad"
         slides = "revolute" if turns else "prismatic"
-        found["coordinates"][q] = {"unit": unit, **_limits(raw, q, joint, unit)}
+        found["coordinates"][q] = {"unit": unit}
         keys: Entries = {"kind": slides, "axis": list(axis), "angle" if turns else "displacement": q}
-        if (mimic := joint.one("mimic")) is not None:
-            self._mimic(found, raw, mimic)
-        elif driven:
+        own = self.ranges[q] = _range(joint)
+        mimic = joint.one("mimic")
+        follows = mimic is not None and self._mimic(found, raw, mimic)
+        keys |= {} if follows else own.limits()
+        found["coordinates"][q] |= _about(raw, q, joint, unit, own.remark(unit) if follows or own.empty else [])
+        if mimic is None and driven:
             effort = self.names.new(f"{'tau' if turns else 'F'}_{q}")
             found["inputs"][effort] = {"value": 0, "unit": "N*m" if turns else "N"}
             keys["torque" if turns else "force"] = effort
@@ -287,19 +301,20 @@ class _Reading:
                 dynamics.read.discard("friction")
         return Moved(keys, name=q)
 
-    def _mimic(self, found: Entries, raw: str, mimic: XmlElement) -> None:
+    def _mimic(self, found: Entries, raw: str, mimic: XmlElement) -> bool:
+        """Reads the equation q = multiplier q' + offset; True if the other coordinate exists."""
         q, other = self.coordinate[raw], mimic.need("joint")
         leader = self.joints.get(other)
         unit = None if leader is None else ONE_AXIS.get(_need_kind(leader))
         if unit is None:  # some files have it so: reported among the parts left out
             mimic.read.discard("joint")
-            return
+            return False
         factor, offset = mimic.number("multiplier", "1"), mimic.number("offset", "0")
-        if offset:
-            found["coordinates"][q]["start"] = offset
+        self.follows[q] = Mimic(self.coordinate[other], factor, offset)
         same = unit == found["coordinates"][q]["unit"]
         follows = gap(q, [(-factor, self.coordinate[other])], -offset, weighed=not same)
         found["constraints"][self.bodies.new(f"mimic_{q}")] = {"kind": "equation", "gap": follows}
+        return True
 
     def _planar(self, found: Entries, raw: str, normal: Vector) -> list[Moved]:
         """Two slides across the normal and a turn about it."""
@@ -365,13 +380,21 @@ def left_out(root: XmlElement, why: Mapping[str, str]) -> tuple[LeftOut, ...]:
     return tuple(reported_left(what, where, why.get(what, NO_COUNTERPART)) for what, where in groups.items())
 
 
-def _limits(raw: str, q: str, joint: XmlElement, unit: str) -> Entries:
-    """A remark: the joint's name where it is another, and its limits."""
-    said = [f"joint {raw}"] if q != raw else []
+def _range(joint: XmlElement) -> Range:
+    limit = joint.one("limit")
+    if limit is None or _need_kind(joint) == "continuous":
+        return Range()
+    lower, upper = limit.get("lower"), limit.get("upper")
+    if not (lower or upper) or upper == UNLIMITED:
+        return Range()
+    return Range(limit.number("lower", "0"), limit.number("upper", "0"))
+
+
+def _about(raw: str, q: str, joint: XmlElement, unit: str, ends: Sequence[str]) -> Entries:
+    """A remark: the joint's name where it is another, ends that are no stops here, the limits of its motor."""
+    said = [*([f"joint {raw}"] if q != raw else []), *ends]
     if (limit := joint.one("limit")) is not None:
-        lower, upper, effort, speed = (limit.get(key) for key in ("lower", "upper", "effort", "velocity"))
-        if _need_kind(joint) != "continuous" and (lower or upper) and upper != UNLIMITED:
-            said.append(f"from {lower or 0} to {upper or 0} {unit}")
+        _, _, effort, speed = (limit.get(key) for key in ("lower", "upper", "effort", "velocity"))
         if effort and effort != UNLIMITED:
             said.append(f"at most {effort} {'N*m' if unit == 'rad' else 'N'}")
         if speed and speed != UNLIMITED:

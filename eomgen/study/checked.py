@@ -183,7 +183,7 @@ def _start_of_loops(model: Model, modes: ContactModes, freedom: Freedom) -> Loop
     if not model.coordinates or not (freedom.closing or model.speeds):
         return LoopStart()
     try:
-        system = system_of(model, {name: mode for name, mode in modes.items() if mode.closed})
+        system = system_of(model, modes)
         if not freedom.closing:
             return LoopStart()
         begun = Start.of(system)

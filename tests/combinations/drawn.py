@@ -527,7 +527,9 @@ class Drawing:
                 joint["rest"] = {"value": 0.1, "unit": "rad" if turning else "m"}
         if extra == "stops":  # wide: a run within them moves as one without
             several = {"planar": ("x", "angle"), "cylindrical": ("displacement", "angle")}.get(how, ())
-            wide = [-1000, "inf"]
+            wide: Any = [-1000, "inf"]
+            if how in ("universal", "spherical", "quaternion"):
+                several, wide = ("angles",), [wide] * (2 if how == "universal" else 3)
             joint |= {"limits": dict.fromkeys(several, wide) if several else wide, "restitution": 0.3}
         if extra == "rubbing":
             joint["friction"] = {"torque" if how in ("revolute", "screw") else "force": 0.4, "smooth": 0.3}

@@ -117,9 +117,12 @@ FORBIDDEN: tuple[Forbidden, ...] = (
     *_each(
         ("joint_with", "stops"),
         "joint",
-        ("free", "placed", "path", "fixed", "universal", "spherical", "quaternion"),
-        "no one variable that a stop could hold",
+        ("free", "placed", "path", "fixed"),
+        "no variable that a stop could hold",
         "unknown",
+    ),
+    Forbidden(
+        ("joint_with", "stops"), ("joint", "quaternion"), "no angle that a stop could hold", "limits are of angles"
     ),
     Forbidden(("base", "all_driven"), ("joint_with", "stops"), "no stop holds a joint that is driven", "is driven"),
     *_each(

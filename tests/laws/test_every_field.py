@@ -32,6 +32,8 @@ TENSOR = "mass = 'm'\ncenter = [0.1, -0.05, 0.2]\ninertia = [0.3, 0.4, 0.5, 0.02
 YIELDING = "limits = ['inf', 0.1], stop = { stiffness = 'k', damping = 'c' }"
 REBOUNDS = "restitution = 'mu'"
 STOPS = "limits = [-1, 'l'], restitution = 'mu'"
+ANGLES = "limits = { angles = [[-1, 'l'], ['-inf', 2]] }, restitution = 'mu'"
+THREE = "limits = { angles = [[-3, 3], ['-inf', 3], ['-inf', 'inf']] }, restitution = 0.2"
 RUBS = ", friction = { torque = 0.4, static = 0.5 }"
 SLIDES = ", friction = { force = 0.7 }"
 EFFORTS = "stiffness = 'k', damping = 'c', rest = 0.3, armature = 0.05"
@@ -281,9 +283,11 @@ SPACE = {
     "screw that yields": jointed(
         f'kind = "screw", {SEAT}, axis = [1, -2, 2], angle = "a", pitch = 0.2, {YIELDING}', "a"
     ),
-    "universal": jointed(f'kind = "universal", {SEAT}, axes = [[1, 0, 0.2], [0, 1, 0]], angles = ["a", "b"]', "a", "b"),
+    "universal": jointed(
+        f'kind = "universal", {SEAT}, axes = [[1, 0, 0.2], [0, 1, 0]], angles = ["a", "b"], {ANGLES}', "a", "b"
+    ),
     "planar": jointed(f'kind = "planar", {SEAT}, x = "a", y = "b", angle = "d"', "a", "b", "d"),
-    "spherical": jointed(f'kind = "spherical", {SEAT}, orientation = "zxz", angles = ["a", "b", "d"]', "a", "b", "d"),
+    "spherical": jointed(f'kind = "spherical", {SEAT}, orientation = "zxz", angles = ["a", "b", "d"], {THREE}', *"abd"),
     "path": jointed(f'kind = "path", {SEAT}, along = "a", heading = 0.3, pieces = {PIECES}', "a"),
     "placed": jointed(
         'kind = "placed", on = "base", at = ["a", 0, "b"], turned = { angle = 1 }, axis = [0, 1, 1], angle = "b"',

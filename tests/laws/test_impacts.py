@@ -18,6 +18,7 @@ from eomgen.mechanics.impacts.law import lemke, routh
 from eomgen.proof.contact_phases import stepped_impact
 from eomgen.results import impact
 from eomgen.simulation.result import Trajectory
+from eomgen.study.checked import checked_model
 from eomgen.symbolic.expression import parse
 
 G = 9.81
@@ -480,6 +481,12 @@ def test_the_impact_of_a_closed_chain_is_that_of_its_run():
     assert loss.value_at({**values, "v": last["a'"]}) == pytest.approx(hit.loss, rel=1e-6)
 
 
+def test_a_stop_that_is_open_at_the_start_is_none_of_the_loops_that_close_there():
+    """`check` closes the pin alone, and says nothing of the stop but that it is open."""
+    found = checked_model(eomgen.loads(HEAD + CRANK))
+    assert found.start.refused == "" and found.open == ("piston_low",)
+
+
 # -- what is refused -------------------------------------------------------------------------------
 
 
@@ -576,3 +583,64 @@ def test_a_box_comes_to_rest_on_both_corners():
     result = run(BOX, 1.0)
     assert (result["y"][-1], result["phi"][-1]) == pytest.approx((0.2, 0), abs=1e-8)
     assert result.phases[-1].model.configuration.open == ()
+
+
+# -- stops of joints with several angles -----------------------------------------------------------
+
+CARDAN = """
+eomgen = 1
+space = "space"
+parameters = { e = 0.5, I = 2 }
+coordinates = { a = { speed = 0.3 }, b = { start = 5, speed = 40, unit = "deg" } }
+[bodies.ball]
+mass = 1
+inertia = ["I", "I", "I"]
+joint = { kind = "universal", axes = [[1, 0, 0], [1, 1, 0]], angles = ["a", "b"], LIMITS, restitution = "e" }
+"""
+ONE_END = 'limits = { angles = [["-inf", "inf"], [-10, 30]] }'
+
+
+def test_a_stop_of_one_angle_of_a_cardan_joint_turns_the_other_where_the_axes_are_not_square():
+    """T = I/2 (a'^2 + b'^2 + 2 c a' b'), c = n1 . n2: Lam = (1 + e) I (1 - c^2) b', a' -> a' + c (1 + e) b'."""
+    model = eomgen.loads(CARDAN.replace("LIMITS", ONE_END))
+    c, v = math.sqrt(0.5), math.radians(40)
+    result = eomgen.simulate(model, time=1, target="numpy")
+    (hit,) = result.impacts
+    assert hit.t == pytest.approx(25 / 40, abs=1e-12) and hit.contact == "ball_angles2_high"
+    assert hit.impulses["ball_angles2_high"] == pytest.approx(1.5 * 2 * (1 - c * c) * v, rel=1e-12)
+    assert result["b'"][-1] == pytest.approx(-0.5 * v) and result["a'"][-1] == pytest.approx(0.3 + c * 1.5 * v)
+    assert hit.loss == pytest.approx(2 * (1 - c * c) * v * v * 0.75 / 2) and result.certify().ok
+    found = impact(model, ["ball_angles2_high"]).entries()["impact"]
+    assert found["impulses"]["ball_angles2_high"] == "1/2*(1 + e)*I*b'" and "-b_after' = e*b'" in found["equations"]
+
+
+def test_a_stop_of_the_third_turn_of_a_ball_joint_throws_the_first():
+    """ "xyz", one moment of inertia I: Lam = (1 + e) I cos(b)^2 c', a' -> a' + (1 + e) sin(b) c'."""
+    text = CARDAN.replace(
+        'kind = "universal", axes = [[1, 0, 0], [1, 1, 0]]', 'kind = "spherical", orientation = "xyz"'
+    )
+    text = text.replace('angles = ["a", "b"]', 'angles = ["a", "b", "c"]').replace(
+        'unit = "deg" }', 'unit = "deg" }, c = {}'
+    )
+    free = '["-inf", "inf"]'
+    model = eomgen.loads(text.replace("LIMITS", f'limits = {{ angles = [{free}, {free}, [-10, "inf"]] }}'))
+    found = impact(model, ["ball_angles3_low"])
+    assert found.certify().ok and found.entries()["impact"]["after"] == {
+        "a'": "a' + (1 + e)*sin(b)*c'",
+        "b'": "b'",
+        "c'": "-e*c'",
+    }
+
+
+@pytest.mark.parametrize(
+    "limits, said",
+    [
+        ("limits = { angles = [[-1, 1]] }", "at least 2 entries"),
+        ("limits = { angles = [[-1, 1], [-1, 1], [0, 1]] }", "limits of 3 angles, and the joint has 2"),
+        ("limits = { angles = [[1, -1], [-1, 1]] }", "leave nothing between"),
+        ("limits = [-1, 1]", "limits"),
+    ],
+)
+def test_limits_that_do_not_fit_the_angles_are_told(limits, said):
+    with pytest.raises(ModelError, match=said):
+        eomgen.loads(CARDAN.replace("LIMITS", limits))

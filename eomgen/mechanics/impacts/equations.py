@@ -270,7 +270,8 @@ def _row(system: System, row: Row, name: str, e: Scalar | None) -> ImpactRow:
             f"constraints.{row.constraint}",
             "place the body by coordinates that can leave the contact",
         )
-    return ImpactRow(name, e, tuple(J), sigma, u[0].graph.symbol(f"Lambda_{name.replace(' ', '_')}"), row)
+    J, sigma = tuple(book_form(x, Work.ANSWER) for x in J), book_form(sigma, Work.ANSWER)
+    return ImpactRow(name, e, J, sigma, u[0].graph.symbol(f"Lambda_{name.replace(' ', '_')}"), row)
 
 
 def _after(name: str) -> str:

@@ -162,7 +162,8 @@ class _StartNumbers:
             elif gap > tolerances.CARRIED or (gap >= -tolerances.CARRIED and self._moves(name, rates[name])):
                 modes[name] = OPEN
             elif gap < -tolerances.CARRIED:
-                assumptions.append(_closed(name, f"the start passes through it, by {-gap:.3g} m"))
+                unit = self.model.constraints[name].gap_unit(self.model.bodies)
+                assumptions.append(_closed(name, f"the start passes through it, by {-gap:.3g} {unit}"))
         return ContactsAtStart(modes, tuple(assumptions))
 
     def _moves(self, name: str, rate: float) -> bool:

@@ -4,7 +4,7 @@ A constraint is declared by fields that say what touches what.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar
 
 from eomgen.frozen import dataclass
@@ -180,6 +180,10 @@ class Constraint(Part, ABC):
     def impulse_unit(self, catalog: Catalog) -> str:
         """The unit of its impulse, where it can close; "" elsewhere."""
         return "N*s" if getattr(self, "unilateral", False) else ""
+
+    def gap_unit(self, bodies: Mapping[str, Any]) -> str:
+        """The unit of its gap: what an angle stops is measured in rad."""
+        return "m"
 
     def edges(self, scene: LoadContext) -> tuple[Edge, ...]:
         """Quantities that must not vanish, or else the point of contact is undefined; () where there are none."""

@@ -1,6 +1,6 @@
 """Supports, sliders, guides, clamps, knife edges, and stops of joints."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any, ClassVar
 
@@ -322,14 +322,16 @@ class Limit(Constraint):
             )
         given = {name for name, part in catalog.table("coordinates").items() if part is not None and part.driven}
         given |= {part.drives() for part in catalog.table("constraints").values() if part is not None}
-        driven = given & getattr(joint, field).names
+        driven = given & joint.variable_of(field).names
         if driven and (self.upper or limits.low is None or limits.high is None):
             what = f"'{min(driven)}' is driven: no stop can hold the joint of '{self.body}' where its motion leads on"
             yield Diagnostic(where, what, "leave out the limits, or the motion")
 
     def impulse_unit(self, catalog: Catalog) -> str:
-        body = catalog.table("bodies")[self.body]
-        return "N*m*s" if body.joint.limited[self.variable] == "angle" else "N*s"
+        return "N*m*s" if self.gap_unit(catalog.table("bodies")) == "rad" else "N*s"
+
+    def gap_unit(self, bodies: Mapping[str, Any]) -> str:
+        return "rad" if bodies[self.body].joint.limited[self.variable].startswith("angle") else "m"
 
     def rows(self, scene: LoadContext) -> tuple[ConstraintRow, ...]:
         """s - bound >= 0, of an upper one bound - s >= 0; the push along the joint does the work of a unit times s'."""

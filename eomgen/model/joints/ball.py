@@ -23,7 +23,8 @@ from eomgen.model.joints.base import (
     unit,
     vector,
 )
-from eomgen.model.kinds import ValueOf
+from eomgen.model.kinds import Restitution, TurnsLimits, ValueOf
+from eomgen.model.part import PartRule
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression import Expression, Fraction, Matrix, Pose, Vector, as_expression, cos, sin
 
@@ -180,8 +181,11 @@ class Spherical(Joint):
         angles: of these turns [rad].
         quaternion: names of its four coordinates, scalar first.
         omega: names of the speeds: the child's angular velocity against the parent, child's axes [rad/s].
+        limits: rigid stops of the angles: { angles = [[least, largest], ...] }, "inf" for none.
+        restitution: of the stops: with this share of its speed it rebounds, 0 to 1 (None: not at all).
     """
 
+    limited: ClassVar[tuple[str, ...]] = ("angles1", "angles2", "angles3")
     kind: ClassVar[str] = "spherical"
     only_space: ClassVar[bool] = True
     beside_orientation: ClassVar[tuple[str, ...]] = ()
@@ -189,9 +193,16 @@ class Spherical(Joint):
     angles: Angles | None = None
     quaternion: QuaternionNames | None = None
     omega: Omega | None = None
+    limits: Annotated[TurnsLimits, PartRule(TurnsLimits)] | None = None
+    restitution: Restitution | None = None
 
     def diagnostics(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
         yield from turning_diagnostics(self, path, catalog)
+        if self.limits is not None and self.angles is None:
+            what = "limits are of angles, and this joint turns by a quaternion"
+            yield Diagnostic((*path, "limits"), what, 'orientation = "xyz" and three angles', key=True)
+        elif self.limits is not None:
+            yield from _each_angle(self, path)
 
     @property
     def spins(self) -> tuple[str, ...]:
@@ -235,12 +246,22 @@ class Universal(Joint):
     Args:
         axes: n1 fixed in the (turned) parent, n2 fixed in the child; at angles 0 the axes of both agree.
         angles: a and b [rad].
+        limits: rigid stops of the angles: { angles = [[least, largest], [least, largest]] }, "inf" for none.
+        restitution: of the stops: with this share of its speed it rebounds, 0 to 1 (None: not at all).
     """
 
+    limited: ClassVar[tuple[str, ...]] = ("angles1", "angles2")
     kind: ClassVar[str] = "universal"
     only_space: ClassVar[bool] = True
     axes: TwoAxes
     angles: TwoAngles
+    limits: Annotated[TurnsLimits, PartRule(TurnsLimits)] | None = None
+    restitution: Restitution | None = None
+
+    def diagnostics(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
+        """Diagnostics of limits that are not one of each angle."""
+        if self.limits is not None:
+            yield from _each_angle(self, path)
 
     def turns(self) -> tuple[Expression, ...]:
         return self.angles
@@ -271,3 +292,11 @@ class Universal(Joint):
         """The turn about the axis of the child."""
         _, second = self._normals(value)
         return Matrix.rotation(second, cos(s[1]), sin(s[1]))
+
+
+def _each_angle(joint: Spherical | Universal, path: DocumentPath) -> Iterator[Diagnostic]:
+    """Diagnostics of limits that are fewer or more than the angles of their joint."""
+    given, angles = getattr(joint.limits, "angles", None), joint.angles or ()
+    if given is not None and len(given) != len(angles):
+        what = f"limits of {len(given)} angles, and the joint has {len(angles)}"
+        yield Diagnostic((*path, "limits", "angles"), what, 'one pair for each, ["-inf", "inf"] for none')

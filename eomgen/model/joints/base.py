@@ -167,7 +167,7 @@ class Joint(Part):
         given = getattr(self, "limits", None)
         if given is None or getattr(self, "stop", None) is not None:
             return ()
-        each = (given,) if isinstance(given, Limits) else (getattr(given, name) for name in self.limited)
+        each = (given,) if isinstance(given, Limits) else (entry_of(given, name) for name in self.limited)
         pairs = zip(self.limited, each, strict=True)
         return tuple((k, name, limits) for k, (name, limits) in enumerate(pairs) if limits is not None)
 
@@ -177,9 +177,14 @@ class Joint(Part):
         given = getattr(self, "friction", None)
         if given is None or not self.limited:
             return ()
-        each = (given,) if isinstance(given, JointFriction) else (getattr(given, name, None) for name in self.limited)
+        each = (given,) if isinstance(given, JointFriction) else (entry_of(given, name) for name in self.limited)
         pairs = zip(self.limited, each, strict=True)
         return tuple((k, name, law) for k, (name, law) in enumerate(pairs) if law is not None)
+
+    def variable_of(self, field: str) -> Expression:
+        """The variable of that field; of `angles2` the second of its angles."""
+        found: Expression = entry_of(self, field)
+        return found
 
     def named_contact(self, body: str, field: str) -> str:
         """Name of what acts along a variable: that of the body, of several variables arm_angle."""
@@ -246,6 +251,15 @@ class Joint(Part):
     def _not_yet(self) -> NotYet:
         """A kind whose fields are read and whose law this version does not state."""
         return NotYet(f"the joint '{self.kind}' is not derived yet")
+
+
+def entry_of(part: Any, field: str) -> Any:
+    """Entry of a field, of `angles2` its second entry; None where there is none."""
+    if hasattr(part, field):
+        return getattr(part, field)
+    entries = getattr(part, field.rstrip("123"), None) or ()
+    number = field[len(field.rstrip("123")) :]
+    return entries[int(number) - 1] if number and int(number) <= len(entries) else None
 
 
 def vector(components: tuple[Expression, ...] | None, value: ValueOf, default: Vector = Vector.ZERO) -> Vector:
