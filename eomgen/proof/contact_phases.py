@@ -102,7 +102,7 @@ class _Seen:
         return self._least("it slides against its sense by", v, self._size("rates"), "m/s")
 
     def _least(self, what: str, values: np.ndarray, size: float, unit: str) -> str:
-        least = float(np.min(values, initial=0.0))
+        least = float(np.nanmin(values, initial=0.0))
         return f"{what} {-least:.3g} {unit}" if least < -tolerances.OPEN_GAP * size else ""
 
     def _along(self, scalar: Scalar) -> np.ndarray:
@@ -155,7 +155,7 @@ class _Seen:
         return np.asarray(np.linalg.norm(across, axis=0)[None, :])
 
     def _forces(self, contact: Contact, labels: tuple[str, ...]) -> np.ndarray:
-        """Components of a contact's force, k x n."""
+        """Components of a contact's force, k x n; nan where it has no single value."""
         kind = "joint" if contact.of_joint and labels[0] == "n" else "constraint"
         owner = contact.body if kind == "joint" else contact.name
         mine = [c for c in self.model.reactions.components if c.owner == owner and c.kind == kind]
@@ -163,8 +163,7 @@ class _Seen:
         requested = [names.index(c.name) for c in mine if c.label in labels]
         if not requested or np.isnan(found[:, requested]).all():
             raise NoValue("its force has no single value")
-        known = found[:, requested]
-        return np.asarray(known[np.isfinite(known).all(axis=1)].T)
+        return found[:, requested].T
 
 
 def bodies_stand_as_reported(phases: Sequence[Phase], apart: System) -> Iterator[Check]:

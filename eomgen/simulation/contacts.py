@@ -303,6 +303,15 @@ class ContactSignals:
         n = len(self.functions.equations.symbols.u)
         return max([*forces, *found[:n]], default=0.0), max([1.0, *found[n:]])
 
+    def rows_hold(self, t: float, x: np.ndarray) -> bool:
+        """True if J a + gamma = 0 at one state: no forces can hold what passes a dead centre, where J is 0."""
+        equations = self.functions.equations
+        n, k = len(equations.symbols.u), len(equations.J)
+        found = self._rows.many(np.array([t]), self.functions.inner(x)[None, :], self.functions.p)[0]
+        a, gamma, J = found[:n], found[n : n + k], found[n + k :].reshape(k, n)
+        sizes = np.abs(J) @ np.abs(a) + np.abs(gamma) + max(1.0, float(np.max(np.abs(a), initial=0.0)))
+        return bool(np.all(np.abs(J @ a + gamma) <= tolerances.COMPUTED * sizes))
+
     def floors(self, t: float, x: np.ndarray) -> np.ndarray:
         """Rounding error of each bound at one state; a speed may pass 0 by as much as counts as stopped."""
         n = self.functions.places
@@ -402,6 +411,12 @@ class ContactSignals:
         return self.functions.kinematic(
             tuple(b.value for b in self.watch.bounds if b.kind == "piece" and b.value is not None)
         )
+
+    @cached_property
+    def _rows(self) -> RightHandSide:
+        equations = self.functions.equations
+        J = (x for row in equations.J for x in row)
+        return self.functions.function((*equations.symbols.a, *equations.gamma, *J))
 
     @cached_property
     def _sized(self) -> RightHandSide:

@@ -509,6 +509,9 @@ def agrees(phase: PhaseModel, t: float, values: Values, *, sliding: Mapping[str,
     x = phase.state(values)
     found = phase.signals.look(t, x)
     forces, accelerations = phase.signals.sizes(t, x)
+    sticks = any(phase.watch.mode(contact) == STICKS for contact in phase.contacts)
+    if sticks and not phase.signals.rows_hold(t, x):
+        return False
     requested = [contact for contact in phase.contacts if contact.name not in apart]
     signs = [_signs(phase.watch.mode(contact), contact, found, sliding.get(contact.name, 0)) for contact in requested]
     return not any(

@@ -189,7 +189,8 @@ class Reactions:
         """
         if self.is_open(owner):
             return 0
-        if owner in self.balance.sizes:
+        signed = any((c.owner, c.label) == (owner, "n") for c in self.components)  # of a slide in the plane
+        if owner in self.balance.sizes and not signed:
             found: Scalar = self._replaced(Vector((self.balance.sizes[owner], 0, 0)))[0]
             return found
         several = [j for j, c in enumerate(self.components) if c.owner == owner and c.label.startswith("n ")]

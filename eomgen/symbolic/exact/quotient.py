@@ -222,8 +222,13 @@ class _Roots:
         return self.ring.of_one_degree(self.ring.of(terms))
 
     def _factors(self, terms: Terms) -> tuple[Number, list[tuple[RationalPolynomial, int]]]:
-        """The number, and the irreducible factors with their powers, positive where all their terms have one sign."""
+        """The number, and the irreducible factors with their powers, positive where all their terms have one sign.
+
+        What is 0 once its terms stand over one divisor is the number 0: a speed at the instant at which it vanishes.
+        """
         element = self._element(terms)
+        if not element.terms:
+            return 0, []
         if len(element.terms) > MOST_TERMS_UNDER_A_ROOT or element.degree > LARGEST_DEGREE:
             raise TooLarge(f"a polynomial of more than {MOST_TERMS_UNDER_A_ROOT} terms or degree {LARGEST_DEGREE}")
         (number, parts), factors = element.factors(), []
