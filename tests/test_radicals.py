@@ -107,3 +107,9 @@ def test_a_sign_that_is_not_known_is_not_lost(text):
         state = {"x": x, "y": y, "g": 9.81}
         expected = value(given, state)
         assert expected != expected or value(short, state) == pytest.approx(expected)
+
+
+def test_a_root_that_vanishes_once_all_stands_over_one_divisor_is_0():
+    """A speed at the instant at which it vanishes."""
+    speed = parse("sqrt((x^2/(x + y) + x*y/(x + y) - x)/(m1 + m2))").evaluate(Names())
+    assert to_text(simplest(speed)) == "0"

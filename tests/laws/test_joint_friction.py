@@ -437,3 +437,47 @@ def test_a_regressor_has_friction_as_a_parameter_and_an_impact_with_a_rubbing_hi
     text = LOADED.replace("friction =", "limits = [-0.3, 2]\nrestitution = 0.5\nfriction =")
     assert "an impulse there would rub too" in run(text, 1).message
     assert run(text.replace('coefficient = "mu", radius = "r"', "torque = 0.3"), 1).impacts
+
+
+CRANK = """
+eomgen = 1
+space = "plane"
+parameters = { J = 0.2, r = 0.1, l = 0.3 }
+coordinates.al = { start = 0.5, speed = 20 }
+coordinates.be = { near = -0.2, dependent = true }
+coordinates.x = { near = 0.37, dependent = true }
+bodies.crank = { mass = 1, inertia = "J", points = { pin = ["r", 0] }, joint = { kind = "revolute", angle = "al" } }
+bodies.rod = { points = { end = ["l", 0] }, joint = { kind = "revolute", on = "crank.pin", angle = "be - al" } }
+bodies.slide.joint = { kind = "prismatic", axis = [1, 0], displacement = "x", force = "P", friction = FRICTION }
+inputs.P = 0
+constraints.wrist = { kind = "pin", points = ["rod.end", "slide.origin"] }
+"""
+
+
+def place(al: float) -> float:
+    """Of the slide: r cos al + sqrt(l^2 - r^2 sin^2 al)."""
+    return 0.1 * math.cos(al) + math.sqrt(0.09 - 0.01 * math.sin(al) ** 2)
+
+
+@pytest.mark.slow
+def test_a_slide_in_a_loop_passes_its_dead_centres():
+    """J (w^2 - w0^2)/2 = -F times the way; in a dead centre x' = 0, and nothing holds what is moved on by x''."""
+    result = run(CRANK.replace("FRICTION", "{ force = 30, static = 90 }"), 0.4)
+    assert senses(result, "slide") == [-1, 1, -1]
+    way = place(0.5) - 0.2 + 0.2 + 0.4 - place(1)
+    last = result.ask("al' at al = 2*pi + 1").value
+    assert last == pytest.approx(math.sqrt(20**2 - 2 * 30 / 0.2 * way), rel=1e-9)
+    assert result.certify().ok
+
+
+def run_of(model, P: float) -> float:
+    """N at the start."""
+    return float(eomgen.simulate(model, time=0.001, inputs={"P": P}, target="numpy")["N"][0])
+
+
+def test_the_normal_force_of_a_rough_slide_keeps_its_sign():
+    """Along the rod N = -(P + F) tan be, be the angle by which it falls, F = mu |N| against x' < 0."""
+    model = eomgen.loads(CRANK.replace("FRICTION", "{ coefficient = 0.1 }") + 'outputs.N = "reaction_n(slide)"')
+    tan = math.tan(math.asin(math.sin(0.5) / 3))
+    for P, N in ((50, -50 * tan / (1 - 0.1 * tan)), (-50, 50 * tan / (1 + 0.1 * tan))):
+        assert run_of(model, P) == pytest.approx(N), P

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 import eomgen
 from eomgen.errors import ModelError
@@ -267,3 +268,26 @@ def test_limits_that_leave_nothing_and_stops_of_driven_joints_are_refused():
         eomgen.loads(CARTS.replace("limits = [0, 1]", "limits = [1, 0]"))
     with pytest.raises(ModelError, match="'d' is driven"):
         eomgen.loads(CARTS.replace("d = { start = 0.5, speed = -1 }", 'd = { motion = "t" }'))
+
+
+PAWL = """
+eomgen = 1
+space = "plane"
+parameters = { J = 0.05, T = 1, e = 0.5 }
+coordinates = { a = { motion = "0.8*sin(6*t)" }, b = { start = 0.5, speed = -3 } }
+bodies.lever.joint = { kind = "revolute", angle = "a" }
+bodies.wheel = { mass = 1, inertia = "J", joint = { kind = "revolute", angle = "b", friction = { torque = "T" } } }
+bodies.pawl.joint = { kind = "revolute", on = "lever", angle = "b - a", limits = [0, "inf"], restitution = "e" }
+"""
+
+
+def test_a_stop_between_what_is_driven_and_what_is_free_is_a_contact():
+    """A pawl: J b'' = T up to b = a(t), there b' - a' -> -e (b' - a')."""
+
+    def gap(t):
+        return 0.5 - 3 * t + 10 * t * t - 0.8 * math.sin(6 * t)
+
+    t = brentq(gap, 0, 0.15, xtol=1e-15)
+    first = run(PAWL, 0.1).impacts[0]
+    assert first.t == pytest.approx(t, rel=1e-9)
+    assert first.impulses["pawl_low"] == pytest.approx(0.05 * 1.5 * (4.8 * math.cos(6 * t) + 3 - 20 * t), rel=1e-9)
