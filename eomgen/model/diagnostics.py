@@ -136,6 +136,8 @@ def unknown_keys(
     listed = ", ".join(f"'{name}'" for name in known)
     for k, key in enumerate(strange):
         fix = (nearest(str(key), known) or f"known here: {listed}") if k < MOST_OFFERS else ""
+        if 0 < len(path) < 3 and key in TABLES and key != "points":
+            fix = f"it is of the whole model: give it its own header, [{key}], or write it above the first header"
         guess = meant(str(key), known)[:1] if k < MOST_OFFERS else ()
         if only and not guess:
             fix, guess = f"write '{only}': it is needed here ({fix})", (only,)

@@ -55,7 +55,8 @@ class ValueTable(Part):
     Args:
         at: places, ascending, in `at_unit`.
         values: there, in `unit`.
-        between: "pchip" (cubics, monotone where the values are), "linear" or "cubic" (f'' continuous).
+        between: "pchip" (cubics, monotone where the values are), "linear" or "cubic" (f'' continuous; the first two
+            pieces are one cubic, and so are the last two).
         unit: of the values.
         at_unit: of the places.
         about: a remark.

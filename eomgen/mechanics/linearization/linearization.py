@@ -341,6 +341,8 @@ def _near(
             raise DerivationError(what, fix="start from an equilibrium, or a steady motion")
     except (DerivationError, NotYet, NoValue, ZeroDivisionError) as error:
         fix = f'start from a {kind}, or let it be sought: about = "{EQUILIBRIUM if at_rest else STEADY}"'
+        if symbols.z and not at_rest:
+            fix = f"start from a {kind}: where the system settles into it, the end of a run has its values"
         raise DerivationError(f"{what}, and no {kind} was found near it", "linearize.about", fix) from error
     shown = (*found.system.symbols.q, *(() if at_rest else found.system.symbols.u))
     away = {x: float(found.numbers[x]) - number[x] for x in shown}
