@@ -307,7 +307,8 @@ class ContactSignals:
         """True if J a + gamma = 0 at one state: no forces can hold what passes a dead centre, where J is 0."""
         equations = self.functions.equations
         n, k = len(equations.symbols.u), len(equations.J)
-        found = self._rows.many(np.array([t]), self.functions.inner(x)[None, :], self.functions.p)[0]
+        rows = (*equations.symbols.a, *equations.gamma, *(entry for row in equations.J for entry in row))
+        found = self.functions.evaluated(np.array([t]), x[None, :], rows)[0]
         a, gamma, J = found[:n], found[n : n + k], found[n + k :].reshape(k, n)
         sizes = np.abs(J) @ np.abs(a) + np.abs(gamma) + max(1.0, float(np.max(np.abs(a), initial=0.0)))
         return bool(np.all(np.abs(J @ a + gamma) <= tolerances.COMPUTED * sizes))
@@ -411,12 +412,6 @@ class ContactSignals:
         return self.functions.kinematic(
             tuple(b.value for b in self.watch.bounds if b.kind == "piece" and b.value is not None)
         )
-
-    @cached_property
-    def _rows(self) -> RightHandSide:
-        equations = self.functions.equations
-        J = (x for row in equations.J for x in row)
-        return self.functions.function((*equations.symbols.a, *equations.gamma, *J))
 
     @cached_property
     def _sized(self) -> RightHandSide:
