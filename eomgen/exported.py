@@ -114,6 +114,10 @@ class _Writing:
     def _link(self, link: BodyLink) -> list[str]:
         mass = self.system.scope.mass_properties(link.name)
         where = f"bodies.{link.name}"
+        if self.system.scope.mass_rates(link.name) is not None:
+            raise DerivationError(
+                f"URDF has no mass that changes, as that of body '{link.name}' does", where, "give it a constant mass"
+            )
         m, *com = self.numbers((mass.m, *(mass.com - link.point)), where)
         tensor = self.numbers([x for row in mass.I for x in row], where)
         name = f"  <link name={quoteattr(self.link_names[link.name])}"

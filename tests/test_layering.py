@@ -252,7 +252,7 @@ DOORS = {  # rooms that are imported through what their stub names, and how many
     "results": 16,
     "study": 20,
     "proof": 64,
-    "model": 131,
+    "model": 132,
     "mechanics.kinematics": 22,
     "mechanics.constraints": 21,
     "mechanics.dynamics": 25,

@@ -5,7 +5,7 @@ System -> the steps of Lagrange's method: energies, work and generalized forces,
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import groupby
 
 from eomgen.documents.bounded import page
@@ -61,6 +61,7 @@ from eomgen.mechanics.kinematics import (
     BodyEnergy,
     JointEffort,
     SystemInertia,
+    SystemScene,
 )
 from eomgen.mechanics.start import ExactStart
 from eomgen.model import Couple, Load, PointForce
@@ -68,6 +69,7 @@ from eomgen.symbolic.expression import Node, Scalar, ScalarRow, depends_on, grad
 from eomgen.symbolic.print import text_size, to_text
 
 T, V = Name("T"), Name("V")
+HELD = "Masses are held as they are in d/dt: what leaves a body or enters it has its velocity there, but for a thrust:"
 
 KINETIC = Law(
     "T = 1/2*m*v^2 + 1/2*omega*I*omega", r"T = \tfrac{1}{2} m v^{2} + \tfrac{1}{2} \omega^{\mathsf{T}} I \omega"
@@ -85,7 +87,7 @@ class Momenta:
     Args:
         T: the kinetic energy that was differentiated.
         momenta: dT/du.
-        rates: d/dt dT/du, linear in the accelerations.
+        rates: d/dt dT/du with the masses as they are, linear in the accelerations.
         held: N^T dT/dq.
     """
 
@@ -99,7 +101,9 @@ def momenta_of(system: System, reader: Reader, T: Scalar) -> Momenta:
     """The three derivatives of T for each speed."""
     scope = system.scope
     momenta = reader.short(gradient(T, scope.symbols.u))
-    rates = reader.short(scope.with_accelerations(momenta))
+    gained = SystemInertia(system.motion).carried_momenta
+    moved = zip(scope.with_accelerations(momenta), gained, strict=True)
+    rates = reader.short(tuple(rate - gain for rate, gain in moved))
     held = reader.short(system.motion.scope.per_speed(gradient(T, scope.symbols.q)))
     return Momenta(T, momenta, rates, held)
 
@@ -151,6 +155,7 @@ def work_step(system: System, reader: Reader, forces: tuple[Scalar, ...]) -> Ste
         statements.append(prose("Potentials and virtual work, ", WORK, ":"))
     else:
         statements.append(prose("Nothing is free to move: what is applied enters the reactions alone."))
+    statements += [said for force in system.loads.applied for said in _flowing(system, force)]
     statements += page(reader, formulas)
     potentials = [x for name, x in formulas if _is_potential(name)]
     if len(potentials) > 1:
@@ -160,6 +165,16 @@ def work_step(system: System, reader: Reader, forces: tuple[Scalar, ...]) -> Ste
         statements.append(prose("The generalized forces of everything applied:"))
         statements += page(reader, [(Name("Q", by=q), Q) for q, Q in zip(names, forces, strict=True)])
     return Step("work", "Work and generalized forces", tuple(statements))
+
+
+def _flowing(system: System, force: Applied) -> Iterator[Statement]:
+    """Sentence that says of a thrust whose mass it is, and how much of it flows."""
+    flow = system.scope.model.forces[force.name].flow
+    if flow is not None:
+        body, said = flow
+        rate = SystemScene(system.motion).unsaid_rate(body) if said is None else system.scope.value(said)
+        words = f"Mass enters {body} at {force.name}, {to_text(rate)} per second. "
+        yield prose(words, "The force is that times its velocity relative to the body there:")
 
 
 def _is_potential(name: Side) -> bool:
@@ -208,7 +223,8 @@ def derivatives_step(system: System, reader: Reader, momenta: Momenta) -> Step:
             (Rate(momentum), momenta.rates[k]),
             (Partial(T, q), momenta.held[k]),
         ]
-    return Step("derivatives", "Derivatives of the kinetic energy", page(reader, formulas))
+    words = (prose(HELD),) if SystemInertia(system.motion).changes else ()
+    return Step("derivatives", "Derivatives of the kinetic energy", (*words, *page(reader, formulas)))
 
 
 # -------- projection steps ------------------------------------------------------------------------------------

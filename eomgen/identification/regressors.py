@@ -133,6 +133,10 @@ def regressor_of(system: System) -> Regressor:
             f"{'constraints' if name in system.scope.model.constraints else 'bodies'}.{name}",
             "say it by a force with a parameter of its own",
         )
+    changing = [link.name for link in system.motion.links if system.scope.mass_rates(link.name) is not None]
+    if changing:
+        what = f"the mass of body '{changing[0]}' changes: it is no parameter"
+        raise DerivationError(what, f"bodies.{changing[0]}", "give it a constant mass where it is to be identified")
     size = len(system.symbols.u)
     columns = [*_bodies(system), *_joints(system), *_frictions(system)]
     rest = tuple(x - y for x, y in zip(_rest(system), SystemInertia(system.motion).given_inertia, strict=True))

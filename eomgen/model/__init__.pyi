@@ -100,6 +100,9 @@ from eomgen.model.forces.base import CoupleOn as CoupleOn
 # Action between two points, or a couple that turns two bodies relative to one another
 from eomgen.model.forces.base import Element as Element
 
+# Mass that enters a body at a point per second, with its velocity relative to the body or against the ground
+from eomgen.model.forces.base import FlowOfMass as FlowOfMass
+
 # A potential energy, or a kinetic one, without a point of application [J]
 from eomgen.model.forces.base import GivenEnergy as GivenEnergy
 

@@ -6,7 +6,18 @@ from typing import Any
 
 from eomgen.frozen import dataclass
 from eomgen.model.diagnostics import Diagnostic
-from eomgen.model.fields import CONFIGURATION, MOTION, PARAMETERS, RATES, SPEEDS, STATE, TIME, Leaf, WrittenEquation
+from eomgen.model.fields import (
+    CONFIGURATION,
+    FLOWING,
+    MOTION,
+    PARAMETERS,
+    RATES,
+    SPEEDS,
+    STATE,
+    TIME,
+    Leaf,
+    WrittenEquation,
+)
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression import Expression
 
@@ -63,6 +74,7 @@ class Catalog:
         return {
             PARAMETERS: constant,
             TIME: time,
+            FLOWING: time | frozenset(self.table("states")),
             CONFIGURATION: time | q,
             RATES: time | q | rates,
             SPEEDS: time | q | rates | speeds,

@@ -21,6 +21,7 @@ from eomgen.symbolic.expression import Expression, as_expression, is_exact
 
 PARAMETERS = "parameters"  # what names may stand in an expression: parameters only
 TIME = "parameters and time"
+FLOWING = "parameters, states and time"
 CONFIGURATION = "parameters, coordinates and time"
 RATES = "parameters, coordinates, their rates and time"
 SPEEDS = "parameters, coordinates, their rates, speeds and time"

@@ -10,6 +10,7 @@ from eomgen.frozen import dataclass
 from eomgen.model.diagnostics import Diagnostic, unknown_keys
 from eomgen.model.fields import (
     CONFIGURATION,
+    FLOWING,
     MOTION,
     RATES,
     SPEEDS,
@@ -41,7 +42,7 @@ RESISTS = "it drives away from its rest"
 TAKES = "it gives energy"
 
 Formula = Annotated[Expression, FormulaRule()]
-Mass = Annotated[Expression, FormulaRule("kg", "nonnegative")]
+Mass = Annotated[Expression, FormulaRule("kg", "nonnegative", FLOWING)]
 Length = Annotated[Expression, FormulaRule("m", "positive")]
 MovingLength = Annotated[Expression, FormulaRule("m", "positive", TIME)]
 Radius = Annotated[Expression, FormulaRule("m", "nonnegative")]
@@ -49,7 +50,7 @@ NaturalLength = Annotated[Expression | str, FormulaRule("m", "nonnegative", TIME
 ConstantAngle = Annotated[Expression, FormulaRule("rad")]
 Opening = Annotated[Expression, FormulaRule("rad", "positive")]
 RestAngle = Annotated[Expression, FormulaRule("rad", "", TIME)]
-InertiaTensor = Annotated[VectorFormula, AxialRule(FormulaRule("kg*m^2"), (3, 6))]
+InertiaTensor = Annotated[VectorFormula, AxialRule(FormulaRule("kg*m^2", "", FLOWING), (3, 6))]
 RotorInertia = Annotated[Expression, FormulaRule("kg*m^2", "nonnegative")]
 SlideInertia = Annotated[Expression, FormulaRule("kg", "nonnegative")]
 RestLength = Annotated[Expression, FormulaRule("m", "", TIME)]
@@ -71,6 +72,7 @@ AngularDamping = Annotated[Expression, FormulaRule("N*m*s", "", MOTION, usually=
 WorkingForce = Annotated[Expression, FormulaRule(None, "", MOTION, works_on="coordinate")]
 ForceFormula = Annotated[Expression, FormulaRule("N", "", MOTION)]
 Torque = Annotated[Expression, FormulaRule("N*m", "", MOTION)]
+FlowRate = Annotated[Expression, FormulaRule("kg/s", "", MOTION)]
 RateLaw = Annotated[Expression, FormulaRule(None, "", RATES)]
 RateOfState = Annotated[Expression, FormulaRule(None, "", STATE)]
 VelocityLaw = Annotated[Expression, FormulaRule(None, "", SPEEDS, functions=(*PLACES, *VELOCITIES))]
@@ -87,6 +89,7 @@ MovingGroundPlace = Annotated[VectorFormula | str, VectorRule(FormulaRule("m", "
 Direction = Annotated[VectorFormula, VectorRule(FormulaRule(None), nonzero=True)]
 SpaceDirection = Annotated[VectorFormula, VectorRule(FormulaRule(None), length=3, nonzero=True)]
 ForceVector = Annotated[VectorFormula, VectorRule(FormulaRule("N", "", MOTION))]
+FlowVelocity = Annotated[VectorFormula, VectorRule(FormulaRule("m/s", "", MOTION))]
 LineLoad = Annotated[VectorFormula, VectorRule(FormulaRule("N/m", "", MOTION))]
 TwoLineLoads = Annotated[tuple[VectorFormula, ...], ListRule(VectorRule(FormulaRule("N/m", "", MOTION)), 2, 2)]
 Acceleration = Annotated[VectorFormula, VectorRule(FormulaRule("m/s^2", "", TIME), downward=True)]

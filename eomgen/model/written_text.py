@@ -13,6 +13,7 @@ from eomgen.errors import ModelError, UsageError
 from eomgen.frozen import dataclass
 from eomgen.model.fields import (
     CONFIGURATION,
+    FLOWING,
     MOTION,
     PARAMETERS,
     RATES,
@@ -46,6 +47,7 @@ _CONSTANT = ("parameters", "unknowns")
 SCOPES = {
     PARAMETERS: _CONSTANT,
     TIME: _CONSTANT,
+    FLOWING: (*_CONSTANT, "states"),
     CONFIGURATION: (*_CONSTANT, "coordinates"),
     RATES: (*_CONSTANT, "coordinates"),
     SPEEDS: (*_CONSTANT, "coordinates", "speeds"),

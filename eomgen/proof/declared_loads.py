@@ -22,6 +22,7 @@ from eomgen.model import (
     Act,
     CoupleOn,
     Element,
+    FlowOfMass,
     GivenEnergy,
     PushAlong,
     PushAlongLine,
@@ -38,6 +39,7 @@ from eomgen.proof.in_numbers import (
     Way,
     add_push,
     direction_at,
+    mass_that_enters,
     pushed_otherwise,
     pushes_of,
     way_through,
@@ -236,6 +238,8 @@ class _Declared(InNumbers):
                 yield name, self.scene.position((name, mass.com)), self.one(mass.m) * g
         elif isinstance(act, Element):
             yield from self._of_element(act)
+        elif isinstance(act, FlowOfMass):
+            yield self._of_flow(act)
 
     def _along_line(self, line: PushAlongLine) -> Iterator[Placed]:
         """Forces that replace a line load by Simpson's rule, at both ends and in the middle."""
@@ -249,6 +253,22 @@ class _Declared(InNumbers):
         for halves, sixths in SIMPSON:
             here = sixth * sixths / 2 * ((2 - halves) * q[0] + halves * q[1])
             yield line.body, _between(places, halves), here
+
+    def _of_flow(self, act: FlowOfMass) -> Placed:
+        """m' w, m' by a central difference of the declared mass, w less the velocity of the point by the twist."""
+        body, at = self.scene.place(act.point)
+        place = self.scene.position((body, at))
+        flow = self.carried(
+            None if act.axes == "ground" else act.axes, self.vector(self.scene.vector(act.velocity)), direction=True
+        )
+        if act.absolute:
+            flow = flow - self.velocity(body, self.vector(place)) - self._slid(body, at)
+        return body, place, mass_that_enters(self.system, self.state, act) * flow
+
+    def _slid(self, body: str | None, at: Vector) -> Vector:
+        """Velocity of a point that moves in its body, against the body."""
+        rates = way_through(self.system, self.state).rates(at)
+        return self.carried(body, Vector(rates), direction=True)
 
     def _of_element(self, element: Element) -> Iterator[Placed]:
         acting = ActingElement(self.system, self.state, element)

@@ -140,8 +140,9 @@ def mass_matrix(equations: EquationsOfMotion) -> Claim:
 def energy(equations: EquationsOfMotion) -> Claim:
     """d/dt(u . dT/du - T + V) = Q_nc . u + (M a + c - Q) . u - dT/dt + dV/dt, at any a.
 
-    With M a = Q - c + J^T lam it is the energy theorem; dT/dt and dV/dt are those by explicit time and nu. Where
-    dependent rates follow from constraints that depend on time, `_carried_power` is added.
+    With M a = Q - c + J^T lam it is the energy theorem; dT/dt and dV/dt are those by explicit time, states and nu.
+    Where dependent rates follow from constraints that depend on time, `_carried_power` is added, and what d/dt
+    dT/du gains by masses that change.
     """
     scope, symbols = equations.system.scope, equations.symbols
     power = given_power(equations)
@@ -166,6 +167,7 @@ def given_power(equations: EquationsOfMotion) -> Scalar:
     friction = equations.friction or (0,) * len(speeds)
     powered = tuple(a + b for a, b in zip(system.loads.powered_forces, friction, strict=True))
     power = tangent((equations.V - equations.T,), _own_motion(system.scope))[0] + _carried_power(system)
+    power = power + inner(speeds, SystemInertia(system.motion).carried_momenta)
     return sum((u * Q for u, Q in zip(speeds, powered, strict=True)), start=power)
 
 
@@ -189,8 +191,9 @@ def _carried_power(system: System) -> Scalar:
 
 
 def _own_motion(scope: Any) -> dict[Node, Scalar]:
-    """Derivatives by time at zero speeds: 1 for time, and nu for the coordinates."""
-    return {scope.symbols.t: 1, **dict(zip(scope.symbols.q, scope.nu, strict=True))}
+    """Derivatives by time at zero speeds: 1 for time, nu for the coordinates, z' for the states."""
+    states = dict(zip(scope.symbols.z, scope.state_rates, strict=True))
+    return {scope.symbols.t: 1, **dict(zip(scope.symbols.q, scope.nu, strict=True)), **states}
 
 
 def closing_rows(equations: EquationsOfMotion) -> Claim:

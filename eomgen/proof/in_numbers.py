@@ -12,7 +12,7 @@ from typing import Any
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import Motion
-from eomgen.model import Couple, PointForce, in_order
+from eomgen.model import Couple, FlowOfMass, PointForce, in_order
 from eomgen.symbolic.expression import Graph, Matrix, Scalar, State, Vector
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 
@@ -61,6 +61,25 @@ def declared_state_rates(system: System, known: State) -> dict[str, Any]:
         if name in own:
             values[own[name]] = found[name[:-1]]
     return {name: found[name] for name in system.scope.model.states}
+
+
+def mass_that_enters(system: System, known: State, flow: FlowOfMass) -> Any:
+    """Mass that enters per second: as it is said, or the rate of the body's mass less what is said of others.
+
+    That rate is a central difference of the declared mass, along t and the states of first order.
+    """
+    scope, symbols, digits = system.scope, system.symbols, fifty_digits()
+    if flow.rate is not None:
+        return evaluate((scope.value(flow.rate),), known, digits)[0]
+    body = flow.point.partition(".")[0]
+    moving = declared_state_rates(system, known)
+    steps = {symbols.t: 1, **{z: moving[z.name] for z in symbols.z}}
+    ways = [{x: known[x] + h * rate for x, rate in steps.items()} for h in (-STEP, STEP)]
+    m = scope.mass_properties(body).m
+    early, late = (evaluate((m,), {**known, **way}, digits)[0] for way in ways)
+    said = (force.flow for force in scope.model.forces.values())
+    others = [scope.value(x[1]) for x in said if x is not None and x[0] == body and x[1] is not None]
+    return (late - early) / (2 * STEP) - sum(evaluate(others, known, digits), start=0)
 
 
 @dataclass(frozen=True)

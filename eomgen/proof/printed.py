@@ -18,6 +18,7 @@ from eomgen.errors import DerivationError, ExpressionError, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, exact_accelerations
 from eomgen.mechanics.instant import Quantities
+from eomgen.mechanics.kinematics import SystemInertia
 from eomgen.model import FUNCTIONS, OutputSource
 from eomgen.proof.in_numbers import way_through
 from eomgen.proof.states import refuse_open
@@ -170,7 +171,9 @@ class ReadBack:
         if self.equations.system.free is not None:
             return {}
         momenta = gradient(T, symbols.u)
-        rates = self.equations.system.scope.with_accelerations(momenta)
+        gained = SystemInertia(self.equations.system.motion).carried_momenta
+        moved = zip(self.equations.system.scope.with_accelerations(momenta), gained, strict=True)
+        rates = [rate - gain for rate, gain in moved]
         found = {f"dT/d{q.name}": x for q, x in zip(symbols.q, gradient(T, symbols.q), strict=True)}
         for u, p, rate in zip(symbols.u, momenta, rates, strict=True):
             found |= {f"dT/d{u.name}": p, f"d/dt(dT/d{u.name})": rate}

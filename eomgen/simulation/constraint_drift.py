@@ -28,7 +28,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import PLACE, Rank
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, mass
 from eomgen.simulation.event_location import LOOKED_OUT, PARTS, Crossing, Measured
-from eomgen.symbolic.expression import Scalar
+from eomgen.symbolic.expression import Scalar, substituted
 from eomgen.symbolic.numeric import Newton, dense, tolerances
 
 STEPS = 8
@@ -229,8 +229,9 @@ def _rows(
     *,
     resting: bool = False,
 ) -> Rows:
-    M = mass(system.motion)
-    entries = tuple(x for matrix in (M, J, N) for row in matrix for x in row)
+    """The rows, with the masses by which a change is measured; those that are states have their start values in it."""
+    M, states = mass(system.motion), {z: system.scope.start_value(z) for z in system.symbols.z}
+    entries = substituted(tuple(x for matrix in (M, J, N) for row in matrix for x in row), states)
     return Rows(_compiled(entries, system, target), len(J), len(M), resting)
 
 

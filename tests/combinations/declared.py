@@ -6,6 +6,7 @@ Imports nothing of eomgen.
 from __future__ import annotations
 
 import itertools
+import re
 import tomllib
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -194,6 +195,7 @@ class Declared:
         d = tomllib.loads(text)
         self.plane = d["space"] == "plane"
         self.parameters: dict[str, float] = {}
+        self.time = 0.0
         self._declared = d.get("parameters", {})
         for name in self._declared:
             self._parameter(name)
@@ -210,6 +212,13 @@ class Declared:
         self.forces = d.get("forces", {})
         self.outputs = d.get("outputs", {})
         self.mass = {name: self._properties(body) for name, body in self.bodies.items()}
+        own = {name: f"{body.get('mass', '')} {body.get('inertia', '')}" for name, body in self.bodies.items()}
+        self._changing = [name for name, text in own.items() if re.search(r"\bt\b", text)]
+
+    def weigh(self, t: float) -> None:
+        """Sets the masses that change to those at a time, as which the equations hold them."""
+        self.time = t
+        self.mass |= {name: self._properties(self.bodies[name]) for name in self._changing}
 
     def _parameter(self, name: str) -> float:
         if name not in self.parameters:
@@ -243,9 +252,11 @@ class Declared:
         return f, d, dd
 
     def number(self, declared: Any) -> float:
-        """A number of parameters alone."""
+        """A number of parameters alone, and of the time at which the masses are weighed."""
 
         def name(found: str, _: int) -> float:
+            if found == "t" and "t" not in self._declared:
+                return self.time
             return float(np.pi) if found == "pi" and "pi" not in self._declared else self._parameter(found)
 
         def call(function: str, trees: tuple) -> Any:

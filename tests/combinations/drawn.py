@@ -159,6 +159,9 @@ class Drawing:
             return {"mass": "m", "center": self.v("l/3", "h/2", "-h/3"), "inertia": inertia, **P}
         if kind == "massless":
             return P
+        if kind == "leaking":
+            inertia = "I*(1 + t/9)" if self.plane else ["I*(1 + t/9)", "1.2*I*(1 + t/9)", "0.9*I*(1 + t/9)"]
+            return {"mass": "m*(1 + t/9)", "center": self.v("l/3", "h/2", "-h/3"), "inertia": inertia, **P}
         if kind == "parts":
             parts = [
                 {"kind": "rod", "length": "l", "mass": "m"},
@@ -745,6 +748,14 @@ class Drawing:
                 "value": f"-c*{q}'" if unit else f"-ct*{q}' + {strength}*d",
             },
             "values": {"kind": "force", "point": point, "force": self.v(f"K_{name}({q})", f"K_{name}'({q})/2", "F0/3")},
+            "mass_flow": {
+                "kind": "mass_flow",
+                "point": point,
+                "velocity": self.v("d*w", f"{q}'{'' if unit else '*d'}", "d*w/3"),
+                "axes": body,
+                "rate": "-m*w/7",
+            },
+            "rain": {"kind": "mass_flow", "point": point, "absolute": self.v("d*w/2", "-d*w", 0), "rate": "m*w/5"},
             "none": None,
         }[how]
         if how == "values":

@@ -13,13 +13,13 @@ SHAPES = (
     "particle", "rod", "disc", "ring", "rectangle", "triangle", "polygon", "sphere", "cylinder", "box", "cone",
     "ellipsoid", "arc", "annulus", "sector", "ellipse", "hollow_sphere", "spherical_shell", "hemisphere",
     "hemispherical_shell", "tube", "cylindrical_shell", "prism", "conical_shell", "frustum", "pyramid", "tetrahedron",
-    "torus", "parts", "given", "massless",
+    "torus", "parts", "given", "massless", "leaking",
 )  # fmt: skip
 
 FORCES = (
     "gravity", "force", "follower", "couple", "distributed", "spring", "spring_along", "spring_start", "spring_moved",
     "damper", "damper_along", "torsion_spring", "torsion_damper", "between", "potential", "kinetic", "generalized",
-    "values", "none",
+    "values", "mass_flow", "rain", "none",
 )  # fmt: skip
 
 FACTORS: dict[str, tuple[str, ...]] = {

@@ -551,6 +551,17 @@ def _force(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
     return [Load(name, body, _now(place), force, moving=place)] if body else []
 
 
+def _mass_flow(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
+    """What enters per second, times its velocity less that of the point where it was not given against the body."""
+    body, place = _split(now, f["point"]), now.point(f["point"])
+    flow = _now(now.vector(f["velocity"] if "velocity" in f else f["absolute"]))
+    if f.get("axes", "ground") != "ground":
+        flow = _now(now.poses[f["axes"]][1]) @ flow
+    if "absolute" in f:
+        flow = flow - place.c[1][:, 0]
+    return [Load(name, body, _now(place), _number(now.value(f["rate"])) * flow, moving=place)]
+
+
 def _couple(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
     if isinstance(f["couple"], list):
         torque = _now(now.vector(f["couple"]))
@@ -656,7 +667,7 @@ def _generalized(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
 FORCES: dict[str, Callable] = {
     "gravity": _gravity, "force": _force, "couple": _couple, "distributed": _distributed, "spring": _spring,
     "damper": _damper, "between": _between, "torsion_spring": _torsion_spring, "torsion_damper": _torsion_damper,
-    "potential": _potential, "generalized": _generalized, "kinetic": lambda *_: [],
+    "potential": _potential, "generalized": _generalized, "kinetic": lambda *_: [], "mass_flow": _mass_flow,
 }  # fmt: skip
 
 
@@ -788,7 +799,7 @@ def potential(o: Any, now: Any) -> float | None:
             V += _number(now.value(f["stiffness"])) * angle**2 / 2
         elif kind == "potential":
             V += _number(now.value(f["energy"]))
-        elif kind not in ("damper", "torsion_damper", "kinetic"):
+        elif kind not in ("damper", "torsion_damper", "kinetic", "mass_flow"):
             return None
     for body in now.model.bodies.values():
         j = body.get("joint", {})

@@ -116,6 +116,8 @@ class Oracle:
     # curves
 
     def _time(self, t: float, n: int) -> Jet:
+        """The curve of the time, at which masses that change are weighed."""
+        self.model.weigh(t)
         c = np.zeros((3, n))
         c[0] = t
         c[1, 0] = 1.0

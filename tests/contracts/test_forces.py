@@ -95,6 +95,18 @@ EXAMPLES = {
         PLANE: [f'{TWO}, pull = "k*l^2/r^2"', f'{GROUND}, pull = "k*(r - l)"', f'{TWO}, pull = "c*r\'*r"'],
         SPACE: [f'{TWO}, pull = "k*l^2/r^2"', f'{TWO}, pull = "k*r + c*r\'"'],
     },
+    "mass_flow": {
+        PLANE: [
+            'point = "lower.P", velocity = ["k", "c*b\'"], axes = "lower", rate = "tau"',
+            'point = "lower.M", absolute = ["k", 2], axes = "upper", rate = "-c - l*t"',
+            'point = "leaking.origin", velocity = [1, "k"]',
+            'point = "leaking.origin", absolute = [1, "k"]',
+        ],
+        SPACE: [
+            'point = "lower.P", velocity = [1, "k", "c*b\'"], rate = "tau"',
+            'point = "leaking.origin", absolute = [1, 0, "k"], axes = "upper"',
+        ],
+    },
     "potential": {
         PLANE: ['energy = "k*a^2*cos(b)"', 'energy = "k*l*a*sin(w*t)"'],
         SPACE: ['energy = "k*l*(a - b)^4"'],
@@ -125,6 +137,8 @@ a = 0.3
 b = 0.5
 [inputs]
 tau = "sin(2*t)"
+[states]
+z = { start = 0.2, rate = "a' - z*w" }
 """
 BODIES = {
     PLANE: """
@@ -146,6 +160,10 @@ joint = { kind = "revolute", on = "upper.P", angle = "b" }
 mass = "m"
 inertia = 1
 joint = { kind = "placed", at = ["l*sin(w*t)", "g*t + k + c"] }
+[bodies.leaking]
+mass = "m*exp(-w*t)*(1 + z)"
+inertia = 0
+joint = { kind = "fixed", on = "upper.P" }
 """,
     SPACE: """
 [points]
@@ -166,6 +184,10 @@ joint = { kind = "revolute", on = "upper.P", axis = [0, 3, 4], angle = "b" }
 mass = "m"
 inertia = [1, 1, 1]
 joint = { kind = "placed", at = ["l*sin(w*t)", "g*t + k + c", 0] }
+[bodies.leaking]
+mass = "m*exp(-w*t)*(1 + z)"
+inertia = [0, 0, 0]
+joint = { kind = "fixed", on = "upper.P" }
 """,
 }
 NO_FORCE = '[forces]\nnone = { kind = "generalized", coordinate = "a", value = "0*(tau + k + c)" }\n'  # names are used
@@ -428,7 +450,7 @@ def test_a_distributed_load_has_the_resultant_of_its_integral(space, fields):
 def test_the_weights_of_the_bodies_add_up_to_the_weight_of_all():
     """Gravity on upper, on lower and on the rest is gravity on all: V and Q alike."""
     whole = system_with("gravity", PLANE, 'acceleration = [0, "-g"]')
-    names = ("upper", "lower", "clock")
+    names = ("upper", "lower", "clock", "leaking")
     some = [system_with("gravity", PLANE, f'acceleration = [0, "-g"], bodies = ["{name}"]') for name in names]
 
     def numbers(system: System) -> np.ndarray:

@@ -96,6 +96,7 @@ joint = { kind = "revolute", on = "one.end", angle = "b - a" }
 """
 ARMS_3 = ARMS.replace("AXIS", ", axis = [1, 1, 0]").replace("ZERO", ", 0")
 ARMS_2 = ARMS.replace("AXIS", "").replace("ZERO", "")
+LEAKING = ARMS_2.replace('mass = "m", length = "l" }\npoints', 'mass = "m - c*t", length = "l" }\npoints')
 
 
 def constraint(text: str, body: str) -> str:
@@ -185,7 +186,7 @@ joint = {{ kind = "path", at = [0, 1], along = "s", heading = 0.3, pieces = {PIE
 kind = "gravity"
 acceleration = [0, -9.81]
 """,
-    "forces": ARMS_2
+    "forces": LEAKING
     + all_forces(
         weight="kind = 'gravity'\nacceleration = ['sin(t)', -9.81]\nbodies = ['two']\naxis_down = true",
         force="kind = 'force'\npoint = 'two.Q'\nforce = ['u', \"-a'\"]\naxes = 'one'",
@@ -203,6 +204,8 @@ acceleration = [0, -9.81]
         field="kind = 'potential'\nenergy = 'k*cos(a - b)*t'",
         water="kind = 'kinetic'\nenergy = \"m*l^2*(a'^2 + cos(b)*a'*b'/2)\"",
         push="kind = 'generalized'\ncoordinate = 'a'\nvalue = \"u - c*a'\"",
+        jet="kind = 'mass_flow'\npoint = 'two.Q'\nvelocity = ['u', \"-a'\"]\naxes = 'one'\nrate = 'c*u'",
+        rain="kind = 'mass_flow'\npoint = 'two.end'\nabsolute = ['u', \"-a'\"]",
     ),
     "pin": constraint("kind = 'pin'\npoints = ['plate.P']", free()),
     "support": constraint(

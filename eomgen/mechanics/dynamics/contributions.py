@@ -39,6 +39,7 @@ class Contribution:
         name: in words: "the rotation of rod".
         body, force: whose it is; "" of others.
         T, V: its share of the energies.
+        gained: what d/dt dT/du gains by mass that comes; () of a constant mass.
         Q: its generalized forces of what has no potential, one for each speed of the free system.
         kind: "translation", "rotation", "weight", "constant" (a force whose work is that of a potential, which the
             model's V does not hold), "force", "friction" or "constraint".
@@ -51,6 +52,7 @@ class Contribution:
     force: str = ""
     T: Scalar = 0
     V: Scalar = 0
+    gained: ScalarRow = ()
     Q: ScalarRow = ()
     kind: str = ""
     load: Load | None = None
@@ -82,11 +84,16 @@ class Operator:
         """The share of a contribution in every E_k."""
         if part.row is not None:
             return part.row
-        left = [0] * len(self.base.symbols.u) if is_zero(part.T) else [sum(x, start=0) for x in self._inertia(part.T)]
+        left = [0] * len(self.base.symbols.u) if is_zero(part.T) else self._held(part)
         motion = self.base.motion
         elastic = [0] * len(left) if is_zero(part.V) else motion.scope.from_potential(part.V)
         forces = part.Q or [0] * len(left)
         return self.reduced([a - b - c for a, b, c in zip(left, elastic, forces, strict=True)])
+
+    def _held(self, part: Contribution) -> list[Scalar]:
+        """d/dt dT/du - dT/dq, masses held as they are."""
+        rows = [sum(x, start=0) for x in self._inertia(part.T)]
+        return [x - k for x, k in zip(rows, part.gained or (0,) * len(rows), strict=True)]
 
     def inertia(self, T: Scalar) -> tuple[ScalarRow, ScalarRow, ScalarRow]:
         """(what holds accelerations, the rest of d/dt dT/du, -dT/dq) of a kinetic energy."""
@@ -160,12 +167,18 @@ class Contributions:
 
     def _kinetic(self) -> list[Contribution]:
         motion, found = self.operator.base.motion, []
-        for link, energy in zip(motion.links, SystemInertia(motion).bodies, strict=True):
-            rotor = SystemInertia(motion).rotor_energy(link)
-            for kind, T in (("translation", energy.translation), ("rotation", energy.rotation), ("rotor", rotor)):
+        inertia = SystemInertia(motion)
+        for link, energy in zip(motion.links, inertia.bodies, strict=True):
+            moved, turned = inertia.carried_by(energy)
+            parts: tuple[tuple[str, Scalar, ScalarRow], ...] = (
+                ("translation", energy.translation, moved),
+                ("rotation", energy.rotation, turned),
+                ("rotor", inertia.rotor_energy(link), ()),
+            )
+            for kind, T, gained in parts:
                 if not is_zero(T):
                     name = f"the {kind} of {link.name}"
-                    found.append(Contribution(name, link.name, "", T, kind=kind))
+                    found.append(Contribution(name, link.name, "", T, gained=gained, kind=kind))
         given = SystemInertia(motion).given_energy
         return found if is_zero(given) else [*found, Contribution("the given kinetic energy", T=given, kind="given")]
 

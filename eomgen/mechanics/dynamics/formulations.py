@@ -37,6 +37,8 @@ from eomgen.symbolic.print import text_size, to_text
 #
 #     d/dt dT/du_k - dT/dq_k = Q_k,   M = d2T/du du,   c = (d/dt dT/du at a = 0) - dT/dq
 #
+# d/dt holds masses as they are: where they change, what d/dt dT/du gains by that is taken off again.
+#
 # Where coordinates were eliminated, u_free = N u + nu, the equations of the free system are reduced:
 #
 #     M_r = N^T M N,   c_r = N^T (c + M (N' u + nu')),   Q_r = N^T Q
@@ -94,7 +96,7 @@ def _along(system: System, a: ScalarRow) -> tuple[ScalarRow, ScalarRow, ScalarRo
     T = SystemInertia(system.motion).kinetic_energy
     momenta = gradient(T, u)
     held = system.motion.scope.per_speed(gradient(T, scope.symbols.q))
-    c = tuple(p - k for p, k in zip(scope.time_derivative(momenta), held, strict=True))
+    c = tuple(p - k for p, k in zip(_inertial(system.motion, momenta), held, strict=True))
     return tangent(momenta, dict(zip(u, a, strict=True))), c, system.loads.generalized_forces
 
 
@@ -104,8 +106,14 @@ def inertia_by_energies(motion: Motion, T: Scalar) -> tuple[tuple[ScalarRow, ...
     momenta = gradient(T, scope.symbols.u)
     M = jacobian(momenta, scope.symbols.u)
     held = motion.scope.per_speed(gradient(T, scope.symbols.q))
-    c = tuple(p - k for p, k in zip(scope.time_derivative(momenta), held, strict=True))
+    c = tuple(p - k for p, k in zip(_inertial(motion, momenta), held, strict=True))
     return M, c
+
+
+def _inertial(motion: Motion, momenta: ScalarRow) -> ScalarRow:
+    """d/dt dT/du at a = 0, masses held as they are."""
+    gained = SystemInertia(motion).carried_momenta
+    return tuple(p - k for p, k in zip(motion.scope.time_derivative(momenta), gained, strict=True))
 
 
 # -------- projection ------------------------------------------------------------------------------------------

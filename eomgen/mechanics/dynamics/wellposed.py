@@ -46,8 +46,8 @@ class WellPosed:
         by_itself = (*self.equations.nu, *self.equations.sigma)
         if (
             any(not is_zero(x) for x in by_itself)
-            or depends_on(self.equations.V, (t,))
-            or depends_on(self.equations.T, (t,))
+            or depends_on(self.equations.V, (t, *self.equations.symbols.z))
+            or depends_on(self.equations.T, (t, *self.equations.symbols.z))
         ):
             return Extent(False)
         elastic = self.equations.system.motion.scope.from_potential(self.equations.V)

@@ -12,7 +12,7 @@ whole are taken as the loads give them, not from the bodies' equations.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
 from random import Random
 from typing import Any
@@ -25,7 +25,7 @@ from eomgen.mechanics.free_bodies.balance import DIRECTIONS, Balance
 from eomgen.mechanics.free_bodies.reactions import Reactions
 from eomgen.mechanics.free_bodies.wrenches import PLANE_ROWS, SPACE_ROWS, Axes, Component, Effect, joint_effects
 from eomgen.mechanics.kinematics import GROUND
-from eomgen.model import Couple, PointForce
+from eomgen.model import Couple, MassProperties, PointForce
 from eomgen.symbolic.exact import equal
 from eomgen.symbolic.expression import Matrix, Pose, Scalar, State, Vector, is_zero
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, floats_of, tolerances
@@ -210,14 +210,28 @@ def _momentum_rates(system: System) -> tuple[Scalar, ...]:
         P, L = Vector.ZERO, Vector.ZERO
         for p, l in _momenta(system):
             P, L = P + p, L + l
-        system.found[_momentum_rates] = system.scope.with_accelerations((*P, *L))
+        gained = iter((*_of_mass_that_comes(system),))
+        rates = system.scope.with_accelerations((*P, *L))
+        system.found[_momentum_rates] = tuple(x - next(gained) for x in rates)
     found: tuple[Scalar, ...] = system.found[_momentum_rates]
     return found
 
 
-def _momenta(system: System) -> Iterable[tuple[Vector, Vector]]:
+def _of_mass_that_comes(system: System) -> tuple[Scalar, ...]:
+    """Momentum and angular momentum per second of mass that comes at the velocity of its body."""
+    P, L = Vector.ZERO, Vector.ZERO
+    for p, l in _momenta(system, system.scope.mass_rates):
+        P, L = P + p, L + l
+    return (*P, *L)
+
+
+def _momenta(
+    system: System, masses: Callable[[str], MassProperties | None] | None = None
+) -> Iterable[tuple[Vector, Vector]]:
     for link in system.motion.links:
-        mass = system.scope.mass_properties(link.name)
+        mass = (masses or system.scope.mass_properties)(link.name)
+        if mass is None:
+            continue
         moved = system.scope.time_derivative(mass.com)
         velocity = link.twist.v + link.twist.w.cross(mass.com) + Vector((moved[0], moved[1], moved[2]))
         p = mass.m * (link.pose.R @ velocity)

@@ -182,7 +182,10 @@ class _Laws:
 
     @property
     def _constants(self) -> MotionConstants:
-        return MotionConstants(self.system.symbols.t, self._sign, lambda x: simplest(x, Work.VALUE, self.positive))
+        zero = self.system.scope.zero
+        return MotionConstants(
+            self.system.symbols.t, self._sign, lambda x: simplest(x, Work.VALUE, self.positive), zero
+        )
 
     def _sign(self, x: Scalar) -> int | None:
         """The sign of a constant: of its value, or the one that all of its terms have."""

@@ -42,11 +42,13 @@ class MotionConstants:
         t: time.
         sign: -1, 0 or 1 of a constant; None where it is not known.
         simple: a constant in its shortest form.
+        zero: the parameters whose value is 0.
     """
 
     t: Node
     sign: Sign
     simple: Simplify
+    zero: frozenset[str] | None = None
 
 
 @dataclass(frozen=True)
@@ -97,7 +99,7 @@ def particular(line: LinearEquation, of: MotionConstants) -> Scalar | None:
     """One solution of q'' = A q + B q' + f(t)."""
     try:
         if is_zero(line.A) and is_zero(line.B):
-            return integral_from_zero(integral_from_zero(line.f, of.t, ""), of.t, "")
+            return integral_from_zero(integral_from_zero(line.f, of.t, "", of.zero), of.t, "", of.zero)
         total: Scalar = 0
         for node, c in linear_terms(readable(line.f)).items():
             part = _of_term(line.A, line.B, 1 if node is None else node, of)

@@ -18,6 +18,7 @@ from eomgen.symbolic.expression import (
     inner,
     is_zero,
     jacobian,
+    pullback,
     substituted,
     tangent,
 )
@@ -94,6 +95,31 @@ class SystemInertia:
         for link, energy in zip(self.motion.links, self.bodies, strict=True):
             total = total + energy.translation + energy.rotation + self.rotor_energy(link)
         return total
+
+    @property
+    def changes(self) -> bool:
+        """True if the mass of a body changes."""
+        return any(self.motion.scope.mass_rates(link.name) is not None for link in self.motion.links)
+
+    @property
+    def carried_momenta(self) -> ScalarRow:
+        """sum of m' v . dv/du + w . I' dw/du, with the mass that comes at the velocity of its body.
+
+        The share of d/dt dT/du that is no inertia; 0 where masses are constant.
+        """
+        total: ScalarRow = (0,) * len(self.motion.scope.symbols.u)
+        for energy in self.bodies if self.changes else ():
+            for row in self.carried_by(energy):
+                total = tuple(x + y for x, y in zip(total, row, strict=True))
+        return total
+
+    def carried_by(self, energy: BodyEnergy) -> tuple[ScalarRow, ScalarRow]:
+        """(m' v . dv/du, w . I' dw/du) of one body."""
+        rate, u = self.motion.scope.mass_rates(energy.body), self.motion.scope.symbols.u
+        if rate is None:
+            return (0,) * len(u), (0,) * len(u)
+        v, w = energy.velocity, energy.spin
+        return pullback(v, rate.m * v, u), pullback(w, rate.I @ w, u)
 
     # -- rotors ------------------------------------------------------------------------------------
 

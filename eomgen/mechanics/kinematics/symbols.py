@@ -39,6 +39,7 @@ from eomgen.symbolic.expression import (
     Vector,
     as_expression,
     depends_on,
+    depends_on_any,
     gradient,
     holds_op,
     is_zero,
@@ -121,6 +122,11 @@ class Scope:
             for name, node in self.symbols.parameters.items()
             if self.model.parameters[name].positive or (values[name] > 0 if name in values else name in sizes)
         )
+
+    @property
+    def zero(self) -> frozenset[str]:
+        """The parameters whose value is 0."""
+        return parameters_of_zero(self.model)
 
     @cached_property
     def combines(self) -> bool:
@@ -338,6 +344,25 @@ class Scope:
         m = self.value(part.mass)
         return MassProperties(m, self.vector(part.center), _inertia(self, body, part.inertia))
 
+    def mass_rates(self, body: str) -> MassProperties | None:
+        """(m', mass centre, I') of a body whose mass is an expression of t or of states; None of a constant mass.
+
+        Raises:
+            DerivationError: a rate holds an acceleration.
+        """
+        own = self.mass_properties(body)
+        held = (own.m, *(x for row in own.I for x in row))
+        if not depends_on_any(held, (self.symbols.t, *self.symbols.z)):
+            return None
+        rates = self.time_derivative(held)
+        if depends_on_any(rates, self.symbols.a):
+            raise DerivationError(
+                f"the rate of the mass of body '{body}' depends on an acceleration",
+                f"bodies.{body}",
+                "let the rate of the state that is its mass depend on speeds and places alone",
+            )
+        return MassProperties(rates[0], own.com, Matrix.of((rates[1:4], rates[4:7], rates[7:10])))
+
     def made_of(self, body: str) -> Composite:
         """The pieces of a body and the whole of them, each formula in readable form; made once for a scope."""
         if body not in self.composites:
@@ -522,7 +547,8 @@ def primitive(f: Scalar, x: Node, zero: Container[str] | None = None) -> Scalar 
     from eomgen.symbolic.print import scalar_from_sympy, to_sympy
 
     expression, variable = to_sympy((f, x))
-    found = manualintegrate(expression, variable)
+    found = None if zero is None else _over_a_line(expression, variable, zero)
+    found = manualintegrate(expression, variable) if found is None else found
     if found.has(Integral):
         return None
     if zero is not None and not any(symbol.name in zero for symbol in found.free_symbols):
@@ -532,6 +558,36 @@ def primitive(f: Scalar, x: Node, zero: Container[str] | None = None) -> Scalar 
         return scalar_from_sympy(found, lookup)
     except DerivationError:  # a function that the graph does not have
         return None
+
+
+def _over_a_line(f: Any, x: Any, zero: Container[str]) -> Any | None:
+    """P(x)/(a + b x) -> integral of the polynomial in it + r/b log(1 + b x/a), and of logarithms of such lines.
+
+    None of others, and where a or b is 0. Between the places where a + b x vanishes the logarithm of the ratio is real.
+    """
+    from sympy import Add, Poly, PolynomialError, div, expand, fraction, integrate, log, together
+
+    found, rest = 0, 0
+    try:
+        for term in Add.make_args(expand(f)):
+            c, varying = term.as_independent(x, as_Add=False)
+            if varying.func is log and Poly(varying.args[0], x).degree() == 1:
+                b, a = Poly(varying.args[0], x).all_coeffs()
+                found += c * ((x + a / b) * varying - x)
+            else:
+                rest += term
+        over, under = fraction(together(rest))
+        top, line = Poly(over, x), Poly(under, x)
+    except PolynomialError:
+        return None
+    if line.degree() > 1 or (found == 0 and line.degree() == 0) or any(s.name in zero for s in f.free_symbols):
+        return None
+    whole, left = div(top, line)
+    found += integrate(whole.as_expr(), x)
+    if line.degree() == 0:
+        return found
+    b, a = line.all_coeffs()
+    return None if a == 0 else found + left.as_expr() / b * log(1 + b * x / a)
 
 
 def _has_rooted_sines(f: Scalar, x: Node) -> bool:

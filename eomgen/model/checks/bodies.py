@@ -43,6 +43,7 @@ def _mass(catalog: Catalog, name: str, body: Any) -> Iterator[Diagnostic]:
         yield Diagnostic((*path, "shape"), what, "give 'mass' (0 for a massless body)")
     if body.parts is not None and (*path, "parts") not in catalog.broken and (*path, "mass") not in catalog.broken:
         yield from _sharing((*path, "parts"), name, body)
+    yield from _changing_parts(catalog, name, body)
     if _needs_inertia(body) and (*path, "inertia") not in catalog.broken and _turns(catalog, name):
         what = f"body '{name}' can turn but has no 'inertia'"
         yield Diagnostic(path, what, "give 'inertia' about the mass centre (0 for a point)", key=True)
@@ -67,6 +68,15 @@ def _sharing(path: DocumentPath, name: str, body: Any) -> Iterator[Diagnostic]:
         listed = " and ".join(f"{kind} ({MEASURES[d]})" for d, kind in sorted(kinds.items()))
         what = f"the parts of body '{name}' have no common density: {listed}"
         yield Diagnostic(path, what, "give a mass to the parts of one kind: the others share the rest", key=True)
+
+
+def _changing_parts(catalog: Catalog, name: str, body: Any) -> Iterator[Diagnostic]:
+    """Diagnostics of masses among parts that change, which would move the mass centre in the body."""
+    changes = {"t", *catalog.table("states")}
+    for k, piece in enumerate(body.parts or ()):
+        if piece.shape.mass is not None and piece.shape.mass.names & changes:
+            what = f"the mass of part {k + 1} of body '{name}' changes, and moves the mass centre in the body"
+            yield Diagnostic(("bodies", name, "parts", k), what, "make the part a body of its own, fixed to it")
 
 
 def _needs_inertia(body: Any) -> bool:

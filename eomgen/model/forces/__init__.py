@@ -7,6 +7,7 @@ from eomgen.model.forces.applied import CoupleForce, Generalized, PointForce
 from eomgen.model.forces.base import Force
 from eomgen.model.forces.elements import Between, Damper, Spring
 from eomgen.model.forces.energies import Kinetic, Potential
+from eomgen.model.forces.mass_flow import MassFlow
 from eomgen.model.forces.torsion import TorsionDamper, TorsionSpring
 from eomgen.model.forces.weights import Distributed, Gravity
 
@@ -20,6 +21,7 @@ ALL = (
     TorsionSpring,
     TorsionDamper,
     Between,
+    MassFlow,
     Potential,
     Kinetic,
     Generalized,
@@ -35,6 +37,7 @@ __all__ = [
     "Generalized",
     "Gravity",
     "Kinetic",
+    "MassFlow",
     "PointForce",
     "Potential",
     "Spring",

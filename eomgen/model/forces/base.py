@@ -93,7 +93,22 @@ class GivenEnergy:
     kinetic: Expression | None = None
 
 
-Act = Element | PushAt | CoupleOn | PushAlongLine | PushOfMass | PushOnCoordinate | GivenEnergy
+@dataclass(frozen=True)
+class FlowOfMass:
+    """Mass that enters a body at a point per second, with a velocity relative to the body, or against the ground.
+
+    Args:
+        rate: None: what the other flows leave of the rate of the body's mass [kg/s].
+    """
+
+    point: str
+    velocity: tuple[Expression, ...]
+    axes: str = "ground"
+    rate: Expression | None = None
+    absolute: bool = False
+
+
+Act = FlowOfMass | Element | PushAt | CoupleOn | PushAlongLine | PushOfMass | PushOnCoordinate | GivenEnergy
 
 
 # -------- base ------------------------------------------------------------------------------------------------
@@ -121,6 +136,11 @@ class Force(Part):
     @property
     def element(self) -> Element | None:
         """The action between two points or two bodies; None for what acts otherwise."""
+        return None
+
+    @property
+    def flow(self) -> tuple[str, Expression | None] | None:
+        """(body, mass that enters it per second, None: what others leave of the rate of its mass); None of others."""
         return None
 
     @property
