@@ -61,7 +61,6 @@ from eomgen.mechanics.kinematics import (
     BodyEnergy,
     JointEffort,
     SystemInertia,
-    SystemScene,
 )
 from eomgen.mechanics.start import ExactStart
 from eomgen.model import Couple, Load, PointForce
@@ -172,7 +171,7 @@ def _flowing(system: System, force: Applied) -> Iterator[Statement]:
     flow = system.scope.model.forces[force.name].flow
     if flow is not None:
         body, said = flow
-        rate = SystemScene(system.motion).unsaid_rate(body) if said is None else system.scope.value(said)
+        rate = system.scope.unsaid_rate(body) if said is None else system.scope.value(said)
         words = f"Mass enters {body} at {force.name}, {to_text(rate)} per second. "
         yield prose(words, "The force is that times its velocity relative to the body there:")
 

@@ -220,11 +220,7 @@ class SystemScene:
 
     def unsaid_rate(self, body: str) -> Scalar:
         """Rate of a body's mass less what the flows with a rate of their own bring [kg/s]."""
-        scope = self.motion.scope
-        rates = scope.mass_rates(body)
-        flows = (force.flow for force in scope.model.forces.values())
-        said = [scope.value(flow[1]) for flow in flows if flow is not None and flow[0] == body and flow[1] is not None]
-        return sum((-x for x in said), start=0 if rates is None else rates.m)
+        return self.motion.scope.unsaid_rate(body)
 
     def start(self, scalar: Scalar) -> Scalar:
         """The scalar where the coordinates start and t = 0."""

@@ -363,6 +363,13 @@ class Scope:
             )
         return MassProperties(rates[0], own.com, Matrix.of((rates[1:4], rates[4:7], rates[7:10])))
 
+    def unsaid_rate(self, body: str) -> Scalar:
+        """Rate of a body's mass less what the flows with a rate of their own bring [kg/s]."""
+        rates = self.mass_rates(body)
+        flows = (force.flow for force in self.model.forces.values())
+        said = [self.value(flow[1]) for flow in flows if flow is not None and flow[0] == body and flow[1] is not None]
+        return sum((-x for x in said), start=0 if rates is None else rates.m)
+
     def made_of(self, body: str) -> Composite:
         """The pieces of a body and the whole of them, each formula in readable form; made once for a scope."""
         if body not in self.composites:

@@ -13,7 +13,9 @@ from eomgen.symbolic.expression import Call, Scalar
 
 
 def _of_no_state(context: OutputContext, call: Call) -> Scalar:
-    raise DerivationError(f"'{call}' is of a run, not of a state", fix="`eomgen simulate` gives it, its slopes `sweep`: d(last(x))/d(m)")
+    raise DerivationError(
+        f"'{call}' is of a run, not of a state", fix="`eomgen simulate` gives it, its slopes `sweep`: d(last(x))/d(m)"
+    )
 
 
 def _of(names: tuple[str, ...], gives: str, unit: str = "1", like: int | None = 0) -> OutputFunction:
