@@ -172,13 +172,13 @@ class House:
         return sorted(found, key=lambda each: (-each[1], each[0]))
 
     def calls(self, names: Collection[str], above: Collection[str]) -> set[tuple[str, str]]:
-        """(module, function) of each call of these functions outside some rooms."""
+        """(module, function) of each call of these functions, "f" or "Class.f", outside some rooms."""
         return {
-            (module.name, node.func.id)
+            (module.name, name)
             for module in self.modules.values()
             if module.name.split(".")[0] not in above
             for node in ast.walk(module.tree)
-            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in names
+            if isinstance(node, ast.Call) and (name := ast.unparse(node.func)) in names
         }
 
 

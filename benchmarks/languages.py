@@ -21,7 +21,7 @@ import numpy as np
 
 import eomgen
 from eomgen.codegen.program import Program
-from eomgen.codegen.rhs import compiled
+from eomgen.codegen.rhs import RightHandSide
 from eomgen.codegen.targets import ALL, casadi, jax, numba
 from eomgen.codegen.targets.python_files import executed
 from eomgen.errors import RunFailed, ToolMissing
@@ -48,7 +48,7 @@ def batch_of(name: str, program: Program, t: np.ndarray, X: np.ndarray, p: np.nd
     if name == "numba":
         space = executed(numba.FORM.text(program, "m") + _LOOP, "m_numba")
         return lambda: space["_loop"](X, p, len(program.outputs))
-    rhs = compiled(program, name)
+    rhs = RightHandSide.of(program, name)
     return lambda: rhs.many(t, X, p)
 
 

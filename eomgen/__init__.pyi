@@ -22,7 +22,6 @@ from eomgen.identification.regressors import regressor as regressor
 from eomgen.judge.judge import verify as verify
 from eomgen.judge.verdict import Verdict as Verdict
 from eomgen.mechanics.constraints.rank import Freedom as Freedom
-from eomgen.mechanics.constraints.rank import freedom_of as freedom_of
 from eomgen.model import constraints as constraints
 from eomgen.model import forces as forces
 from eomgen.model import joints as joints
@@ -82,6 +81,7 @@ from eomgen.scene.scene import Scene as Scene
 from eomgen.sensitivities.derivatives import Sensitivity as Sensitivity
 from eomgen.sensitivities.derivatives import sensitivity as sensitivity
 from eomgen.simulation.result import Trajectory as Trajectory
+from eomgen.study.checked import freedom_of as freedom_of
 from eomgen.study.programs import InverseDynamics as InverseDynamics
 from eomgen.sweeps.runs_of_a_plan import Sweep as Sweep
 from eomgen.sweeps.runs_of_a_plan import sweep as sweep

@@ -360,7 +360,7 @@ def linearize_command(view: str, over: str | None, **options: Any) -> int:
     M, C and K with their parts, the state matrix, characteristic polynomial, frequencies, damping and shapes of the
     modes, stability with the conditions of Hurwitz, transfer functions from the inputs.
     """
-    from eomgen.model import range_of
+    from eomgen.model import Range
     from eomgen.results import linearize
 
     refuse_idle(view=(options["plot"] is not None, OF_PLOT))
@@ -370,7 +370,7 @@ def linearize_command(view: str, over: str | None, **options: Any) -> int:
     in_full = form_requested(options["wants_json"], options["format_"], options["output"]) == "json"
 
     def found(model: Model, **requested: Any) -> Result:
-        wanted, made = None if over is None else range_of(model, over), linearize(model, **requested)
+        wanted, made = None if over is None else Range.of(model, over), linearize(model, **requested)
         return replace(made, modes=replace(made.modes, in_full=in_full), drawn=view, over=wanted)
 
     return write_result(found, at_start=options["about"] == "start", **options)

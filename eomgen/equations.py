@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from eomgen.codegen import Program, RightHandSide, compiled, parameter_vector
+from eomgen.codegen import Program, RightHandSide, parameter_vector
 from eomgen.documents import (
     Document,
     Result,
@@ -25,12 +25,7 @@ from eomgen.documents import (
 )
 from eomgen.errors import DerivationError, MissingValues, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics import (
-    EquationsOfMotion,
-    System,
-    derived_by,
-    system_of,
-)
+from eomgen.mechanics.dynamics import EquationsOfMotion, System, derived_by
 from eomgen.mechanics.free_bodies import Inverse, Reactions, equations_of_motion
 from eomgen.mechanics.start import Start
 from eomgen.model import Model, nearest
@@ -291,7 +286,7 @@ class Equations(Result):
             printed: the derivation as it is printed, to be read back.
         """
         derived = None if self.method == "lagrange" else self.derived
-        return certify(self.graph, compiled(self.program, target), derived, printed=printed)
+        return certify(self.graph, RightHandSide.of(self.program, target), derived, printed=printed)
 
     def proven(self, document: Document, *, data: bool = False) -> Document:
         """A derivation with its proof: the equations', and of its own formulas as they are printed.
@@ -332,7 +327,7 @@ class Equations(Result):
             ModelError: a free coordinate moves no mass.
         """
         p0, x0 = self._known_values()
-        return compiled(self.program, target, x0=x0, p0=p0)
+        return RightHandSide.of(self.program, target, x0=x0, p0=p0)
 
     def reaction_rhs(self, target: str | None = None) -> ReactionFunction:
         """The reactions `reactions(t, x, p, inputs=())`, with `.names`; what has no single value is not among them.
@@ -343,7 +338,7 @@ class Equations(Result):
             DerivationError: a body is unsupported; a force has no point of application.
         """
         names, program = self.reactions_program
-        return ReactionFunction(names, compiled(program, target))
+        return ReactionFunction(names, RightHandSide.of(program, target))
 
     def inverse_dynamics(self, actuated: Sequence[str] = ()) -> InverseDynamics:
         """The forces and torques that given accelerations take, as expressions and as code.
@@ -365,7 +360,7 @@ class Equations(Result):
         """
         if not any(part.driven for part in self.model.coordinates.values()):
             return self.graph
-        system = system_of(self.model, self.system.modes, with_laws=True)
+        system = System.of(self.model, self.system.modes, with_laws=True)
         alike = len(system.constraints.closing) == len(self.system.constraints.closing) and len(
             system.symbols.u
         ) == len(self.speeds)

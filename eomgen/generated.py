@@ -16,7 +16,7 @@ from eomgen.equations import Equations
 from eomgen.errors import DerivationError, RunFailed, ToolMissing, UsageError
 from eomgen.frozen import dataclass
 from eomgen.identification import Regressor, groups_checked, regressor_of
-from eomgen.mechanics.free_bodies import named_reactions
+from eomgen.mechanics.free_bodies import NamedReaction
 from eomgen.model import Model, ModelOrPath, Values
 from eomgen.proof import (
     Certificate,
@@ -296,7 +296,7 @@ class Generated:
             return None, f"no code for the reactions: {error.what}"
         if found is None:
             return None, "no code for the reactions: none has a single value" if equations.reactions.components else ""
-        requested = named_reactions(equations.reactions.balance)
+        requested = NamedReaction.all_of(equations.reactions.balance)
         left = ", ".join(named.name for named in requested if named.name not in names)
         note = f"not in the code, statically indeterminate: {left}" if left else ""
         remarks = {**described.remarks, **{named.name: f"[{named.unit}]" for named in requested}}

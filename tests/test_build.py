@@ -12,8 +12,8 @@ from hand_made import cart_pole, pendulum
 
 from eomgen import disk_cache
 from eomgen.codegen import build, rhs
-from eomgen.codegen.program import program_of, right_hand_side
-from eomgen.codegen.rhs import compiled
+from eomgen.codegen.program import Program
+from eomgen.codegen.rhs import RightHandSide
 from eomgen.codegen.targets.c import c_text
 from eomgen.errors import RunFailed, TextRefused, ToolMissing
 from eomgen.symbolic.expression.formula import cos, sin, sqrt
@@ -34,9 +34,9 @@ def own_cache(tmp_path, monkeypatch):
 @needs_cc
 def test_a_program_is_compiled_once(own_cache, monkeypatch):
     """The same text is found in the cache; another text is compiled."""
-    compiled(right_hand_side(pendulum()), "c")
+    RightHandSide.of(Program.right_hand_side(pendulum()), "c")
     monkeypatch.setattr(build, "_ran", lambda command: pytest.fail("compiled again"))
-    assert compiled(right_hand_side(pendulum()), "c")(0, [0.0, 1.0], [1, 1, 1])[0] == 1
+    assert RightHandSide.of(Program.right_hand_side(pendulum()), "c")(0, [0.0, 1.0], [1, 1, 1])[0] == 1
     assert [path.suffix for path in own_cache.iterdir()] == [".so"]
 
 
@@ -47,7 +47,7 @@ def test_registers_of_this_machine_change_no_bit():
     graph = Graph()
     x, u, k = (graph.symbol(name) for name in "xuk")
     parts = (x * u - k * x * x, sin(x) * cos(u) - k / (1 + u * u), sqrt(x * x + k * k * u * u))
-    text = c_text(program_of(parts, Symbols(graph, graph.symbol("t"), {"k": k}, {}, (x,), (u,), (), ())), "eomgen")
+    text = c_text(Program.of(parts, Symbols(graph, graph.symbol("t"), {"k": k}, {}, (x,), (u,), (), ())), "eomgen")
     plain, own = (build.library(text, by=by) for by in (build.C, build.of_this_machine()))
     assert build.of_this_machine().flags != build.C.flags
     rng = np.random.default_rng(1)
@@ -135,7 +135,7 @@ def test_a_compiler_that_does_not_work_is_one_line(own_cache, tmp_path, monkeypa
         (tmp_path / name).chmod(0o755)
     monkeypatch.setenv("CC", command.format(tmp_path))
     monkeypatch.setattr(rhs, "_said", set())
-    assert compiled(right_hand_side(pendulum())).target == "numpy"
+    assert RightHandSide.of(Program.right_hand_side(pendulum())).target == "numpy"
     err = capsys.readouterr().err
     assert err.count("\n") == 1 and said in err and "numpy" in err
     assert not own_cache.exists() or list(own_cache.iterdir()) == []
@@ -147,7 +147,7 @@ def test_a_cache_that_cannot_be_written_is_done_without(tmp_path, monkeypatch):
     """A file in the folder's place: the library goes to a folder of this process."""
     (tmp_path / "taken").write_text("")
     monkeypatch.setattr(disk_cache.platformdirs, "user_cache_dir", lambda name: str(tmp_path / "taken" / name))
-    assert compiled(right_hand_side(pendulum()), "c")(0, [0.0, 1.0], [1, 1, 1])[0] == 1
+    assert RightHandSide.of(Program.right_hand_side(pendulum()), "c")(0, [0.0, 1.0], [1, 1, 1])[0] == 1
 
 
 @pytest.mark.slow
@@ -155,8 +155,8 @@ def test_a_cache_that_cannot_be_written_is_done_without(tmp_path, monkeypatch):
 def test_several_at_once_compile_into_one_cache(own_cache):
     """Renaming is atomic: everyone gets a whole library."""
     results: list = []
-    program = right_hand_side(cart_pole(F=0))
-    threads = [threading.Thread(target=lambda: results.append(compiled(program, "c"))) for _ in range(4)]
+    program = Program.right_hand_side(cart_pole(F=0))
+    threads = [threading.Thread(target=lambda: results.append(RightHandSide.of(program, "c"))) for _ in range(4)]
     for thread in threads:
         thread.start()
     for thread in threads:
@@ -170,12 +170,12 @@ def test_without_a_compiler_numpy_is_taken_and_said_once(monkeypatch, capsys):
     monkeypatch.setattr(build.shutil, "which", lambda name: None)
     monkeypatch.setattr(build.importlib.util, "find_spec", lambda name: None)
     monkeypatch.setattr(rhs, "_said", set())
-    program = right_hand_side(pendulum())
+    program = Program.right_hand_side(pendulum())
     assert build.compiler() is None
-    assert compiled(program).target == compiled(program).target == "numpy"
+    assert RightHandSide.of(program).target == RightHandSide.of(program).target == "numpy"
     assert capsys.readouterr().err.count("no C compiler") == 1
     with pytest.raises(ToolMissing, match="no C compiler"):
-        compiled(program, "c")
+        RightHandSide.of(program, "c")
 
 
 @pytest.mark.slow
@@ -184,15 +184,15 @@ def test_without_a_compiler_numpy_is_taken_and_said_once(monkeypatch, capsys):
 def test_the_environment_chooses_the_compiler(tmp_path, monkeypatch, own_cache):
     """CC is obeyed, with its options; one that fails is an error for "c", and said on stderr otherwise."""
     monkeypatch.setenv("CC", f"{build.compiler()} -DNOTHING")
-    assert compiled(right_hand_side(pendulum())).target == "c"
+    assert RightHandSide.of(Program.right_hand_side(pendulum())).target == "c"
     fails = tmp_path / "fails"
     fails.write_text("#!/bin/sh\necho broken >&2\nexit 1\n")
     fails.chmod(0o755)
     monkeypatch.setenv("CC", str(fails))
     monkeypatch.setattr(rhs, "_said", set())
     with pytest.raises(RunFailed, match="broken"):
-        compiled(right_hand_side(pendulum()), "c")
-    assert compiled(right_hand_side(pendulum())).target == "numpy"
+        RightHandSide.of(Program.right_hand_side(pendulum()), "c")
+    assert RightHandSide.of(Program.right_hand_side(pendulum())).target == "numpy"
     monkeypatch.setenv("CC", "no-such-compiler")
     assert build.compiler() is None
 

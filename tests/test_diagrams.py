@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 import eomgen
 from eomgen.documents.letters import NamesArtist
-from eomgen.mechanics.dynamics.system import system_of
+from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.free_bodies.reactions import Reactions
 from eomgen.mechanics.free_bodies.structure import Structure
 from eomgen.mechanics.statics.forces_in_sections import SectionForces
@@ -45,7 +45,7 @@ def written(panel) -> set[str]:
 
 def test_the_diagrams_show_the_section_forces_and_write_their_corners():
     """V: 7/2 to -9/2, then 1; M: 49/16 at x = 7/4 where V = 0, -2 over the roller, drawn downward where positive."""
-    system = system_of(eomgen.loads(BEAM))
+    system = System.of(eomgen.loads(BEAM))
     panels = Figure().subplots(3)
     diagram_panels(panels, SectionForces.of(Reactions.of(system), "beam"), {})
     N, V, M = (curves(panel) for panel in panels)
@@ -60,7 +60,7 @@ def test_the_diagrams_show_the_section_forces_and_write_their_corners():
 def test_an_influence_line_is_drawn_over_the_way_of_the_load():
     """The force of the roller: 0 at A, 1 at B, 3/2 at the tip."""
     panel = Figure().subplots()
-    influence_panel(panel, InfluenceLine.of(Structure.of(system_of(eomgen.loads(BEAM))), "reaction_n(B)"), {})
+    influence_panel(panel, InfluenceLine.of(Structure.of(System.of(eomgen.loads(BEAM))), "reaction_n(B)"), {})
     points = curves(panel)
     assert points[points[:, 1].argmax()] == pytest.approx([6, 1.5])
     assert np.interp(4, points[1:-1, 0], points[1:-1, 1]) == pytest.approx(1)

@@ -10,7 +10,7 @@ import pytest
 
 import eomgen
 from eomgen.documents import rendered
-from eomgen.mechanics.constraints.rank import freedom_of
+from eomgen.mechanics.constraints.rank import Freedom
 from eomgen.proof.degrees_of_freedom import counted_otherwise, lines_otherwise, standing_otherwise
 from eomgen.results.check import check_document
 from eomgen.study.checked import checked_model
@@ -275,7 +275,7 @@ def test_a_hinge_with_its_axis_in_a_body_turns_with_it():
     ground's axes it is another line where the arm is turned: 1 freedom, of which `check` warns."""
     fixed = eomgen.loads(HINGED.replace("AXIS", "[0, 1, 0]"))
     own = eomgen.loads(HINGED.replace("AXIS", '[0, 1, 0], axes = "door"'))
-    assert (freedom_of(fixed).by_rank, freedom_of(own).by_rank) == (1, 2)
+    assert (Freedom.of(fixed).by_rank, Freedom.of(own).by_rank) == (1, 2)
     (warning,) = checked_model(fixed).cautions
     assert "leaves 1 degree of freedom" in warning.what and warning.fix.endswith('it leaves 2: axes = "door"')
     assert checked_model(own).cautions == ()

@@ -17,7 +17,7 @@ from slow_run import usual
 
 import eomgen
 from eomgen.cli import main
-from eomgen.codegen.program import program_of
+from eomgen.codegen.program import Program
 from eomgen.codegen.targets.base import Description, Role, SingleWords
 from eomgen.codegen.targets.c import SINGLE, TARGET
 from eomgen.errors import UsageError
@@ -182,7 +182,7 @@ def test_what_single_precision_cannot_do_is_seen(wrong, monkeypatch):
 def test_names_of_single_precision_are_harmless():
     """A parameter sinf beside the function."""
     s = symbols("float", "sinf double")
-    program = program_of([s.graph.call("sin", s.q[0]) * s.parameters["sinf"] + s.parameters["double"]], s)
+    program = Program.of([s.graph.call("sin", s.q[0]) * s.parameters["sinf"] + s.parameters["double"]], s)
     texts = TARGET.single.files(TARGET.files("odd", [(program, Description("Odd", "", {}))]))
     assert TARGET.single.run(texts, program, "odd", Role.RHS)(0, [0.5, 0], (), [2, 1], None) == pytest.approx(
         [2 * np.sin(0.5) + 1], rel=1e-6

@@ -18,7 +18,7 @@ from eomgen.documents.statements import Formula
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
 from eomgen.mechanics.dynamics.explicit_accelerations import Explicit
-from eomgen.mechanics.free_bodies.names_of_reactions import named_reactions
+from eomgen.mechanics.free_bodies.names_of_reactions import NamedReaction
 from eomgen.mechanics.free_bodies.reactions import Reactions
 from eomgen.model.reader import loads
 from eomgen.pipeline import derive
@@ -257,7 +257,7 @@ def test_reactions_in_json_read_back_by_the_names_of_outputs(name):
     for symbol, text in [*data.get("definitions", []), *data.get("reaction_definitions", [])]:
         also[symbol] = read_back(text, derived, also)
     reactions = Reactions.of(derived.system)
-    requested = {named.name: named for named in named_reactions(reactions.balance)}
+    requested = {named.name: named for named in NamedReaction.all_of(reactions.balance)}
     assert list(data["reactions"]) == list(requested)
     pairs = [
         (read_back(text, derived, also), reactions.combined(requested[n].combination, n) + requested[n].given)

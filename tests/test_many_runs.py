@@ -11,7 +11,7 @@ from slow_run import beside, sampled
 
 import eomgen
 from eomgen.codegen.build import compiler
-from eomgen.codegen.rhs import compiled
+from eomgen.codegen.rhs import RightHandSide
 from eomgen.errors import DerivationError, UsageError
 from eomgen.runs import batch_of_runs as many_runs
 
@@ -168,7 +168,7 @@ def test_a_program_in_lanes_is_the_program(name):
     x = rhs.x0 + rng.normal(0, 0.1, (19, len(rhs.x0)))
     t, p = rng.uniform(0, 2, 19), rhs.p0 * rng.uniform(0.9, 1.1, (19, len(rhs.p0)))
     expected = np.array([rhs(float(a), b, c) for a, b, c in zip(t, x, p, strict=True)])
-    for function in (rhs, compiled(rhs.program, "numpy")):
+    for function in (rhs, RightHandSide.of(rhs.program, "numpy")):
         assert function.many(t, x, p) == pytest.approx(expected, rel=1e-9, abs=1e-9 * np.max(np.abs(expected)))
 
 

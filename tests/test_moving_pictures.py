@@ -20,10 +20,10 @@ from slow_run import sampled
 
 import eomgen
 from eomgen.cli import main
-from eomgen.codegen.program import program_of
-from eomgen.codegen.rhs import compiled
+from eomgen.codegen.program import Program
+from eomgen.codegen.rhs import RightHandSide
 from eomgen.documents.space_drawing import SpacePicture, sight
-from eomgen.mechanics.dynamics.system import system_of
+from eomgen.mechanics.dynamics.system import System
 from eomgen.page import animation as animate
 from eomgen.page import moving_picture
 from eomgen.page.animation import released
@@ -183,10 +183,10 @@ def test_each_phase_of_a_moving_picture_is_drawn_by_its_own_system(name, body):
     way = movie_of(run, times, trail=(point,)).trails[point]
     for phase in run.phases:
         (t, x), system = phase.track, phase.model.system
-        own = program_of(system.motion.position(system.motion.place(point))[:2], system.symbols, inputs=system.inputs)
+        own = Program.of(system.motion.position(system.motion.place(point))[:2], system.symbols, inputs=system.inputs)
         here = (t > phase.start) & (t < min(phase.end, times[-1]))
         if here.any():
-            right = compiled(own, "numpy").many(t[here], x[here], phase.model.p)
+            right = RightHandSide.of(own, "numpy").many(t[here], x[here], phase.model.p)
             found = [np.interp(t[here], np.linspace(0, times[-1], len(way)), column) for column in way.T]
             assert np.abs(np.column_stack(found) - right).max() < 2e-3
 
@@ -374,7 +374,7 @@ def test_of_a_solid_the_faces_towards_the_eye_are_drawn():
     """
     shapes = {3: 'box", mass = "m", size = [1, 2, 3]', 20: 'cylindrical_shell", mass = "m", radius = 1, length = 2'}
     for count, shape in shapes.items():
-        system = system_of(eomgen.loads(text.replace("SHAPE", shape)))
+        system = System.of(eomgen.loads(text.replace("SHAPE", shape)))
         scene = scene_of_system(system)
         x = np.array([[0.3, 0.0]])
         numbers = SceneNumbers(scene, frames_along(scene, np.zeros(1), x, np.array([1.0])))

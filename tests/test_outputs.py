@@ -10,7 +10,7 @@ from each import each
 
 import eomgen
 from eomgen.mechanics.dynamics import formulations as recursive
-from eomgen.mechanics.dynamics.system import system_of
+from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.instant.quantities import Quantities
 from eomgen.study.programs import accelerations_and_multipliers
 from eomgen.symbolic.expression.derivatives import derivative
@@ -94,7 +94,7 @@ class Motion:
 
     def __init__(self, text: str, seed: int = 1) -> None:
         self.model = eomgen.loads(text)
-        self.system = system_of(self.model)
+        self.system = System.of(self.model)
         symbols, rng = self.system.symbols, Random(seed)
         self.state = {}
         for node in (symbols.t, *symbols.parameters.values(), *symbols.x, *symbols.a):

@@ -15,19 +15,8 @@ import eomgen
 from eomgen.codegen import lowering as layout
 from eomgen.codegen.kernel_reader import solve_bordered
 from eomgen.codegen.lowering import stripped
-from eomgen.codegen.program import (
-    RESERVED,
-    Assign,
-    Solve,
-    identifier,
-    identifiers,
-    program_in_motion,
-    program_of,
-    right_hand_side,
-    scheduled,
-    traffic,
-)
-from eomgen.codegen.rhs import compiled
+from eomgen.codegen.program import RESERVED, Assign, Program, Solve, identifier, identifiers, scheduled, traffic
+from eomgen.codegen.rhs import RightHandSide
 from eomgen.codegen.right_answers import vectors
 from eomgen.codegen.targets.base import Role
 from eomgen.codegen.targets.c import C, c_text
@@ -154,7 +143,7 @@ def test_what_moves_no_mass_and_is_not_tied_has_no_acceleration():
 
 def test_statements_come_after_what_they_need():
     """Every argument of a statement is an argument of the program, hoisted, or assigned before."""
-    program = right_hand_side(cart_pole(F=0))
+    program = Program.right_hand_side(cart_pole(F=0))
     known = {program.symbols.t, *program.states, *program.symbols.parameters.values()}
     known |= set(program.symbols.inputs.values()) | {s.node for s in program.hoisted}
     for statement in program.statements:
@@ -209,7 +198,7 @@ def test_a_schedule_changes_no_bit(monkeypatch):
     for way in (scheduled, lambda needs, later: list(needs)):
         monkeypatch.setattr(layout, "scheduled", way)
         texts.append(c_text(program, "eomgen", Role.RHS))
-        rhs = compiled(program, "c")
+        rhs = RightHandSide.of(program, "c")
         states = np.random.default_rng(1).normal(size=(20, len(program.states)))
         values.append([rhs(0.3, x, np.arange(1.0, 1 + len(program.symbols.parameters))).tolist() for x in states])
     assert texts[0] != texts[1] and values[0] == values[1]
@@ -217,7 +206,7 @@ def test_a_schedule_changes_no_bit(monkeypatch):
 
 def test_what_parameters_alone_determine_is_hoisted():
     """theta'' = -(m g l) sin(theta) / (m l^2): the products of parameters are computed once for given p."""
-    program = right_hand_side(pendulum())
+    program = Program.right_hand_side(pendulum())
     parameters = set(program.symbols.parameters.values())
     assert program.count.hoisted == len(program.hoisted) > 0
     assert program.count.total == 3  # sine, product, quotient
@@ -230,18 +219,20 @@ def test_the_cheaper_of_two_ways_is_taken():
     given = cart_pole(F=0)
     s = given.symbols
     cheap, dear = (s.q[0], s.q[1]), tuple(sin(cos(sin(q + 1) + 1) * q) / (q + 2) for q in s.q + s.u)[:2]
-    without = right_hand_side(given).count.total
-    shorter = right_hand_side(replace(given, accelerations=cheap))
+    without = Program.right_hand_side(given).count.total
+    shorter = Program.right_hand_side(replace(given, accelerations=cheap))
     assert shorter.outputs[2:] == cheap and shorter.count.total < without
     longer = tuple(dear[0] ** 7 * dear[1] ** 5 + sin(x * dear[0]) * cos(x + dear[1]) for x in s.q)
-    assert right_hand_side(replace(given, accelerations=longer)).count.total == without
+    assert Program.right_hand_side(replace(given, accelerations=longer)).count.total == without
 
 
 def test_a_large_system_is_solved_in_a_loop_and_a_small_one_written_out():
     """Never unroll an O(n^3) solve: n = 12 is written out, n = 20 is one Solve statement."""
-    kinds = {n: [s.kind for s in right_hand_side(spring_row(n)).statements if isinstance(s, Solve)] for n in (12, 20)}
+    kinds = {
+        n: [s.kind for s in Program.right_hand_side(spring_row(n)).statements if isinstance(s, Solve)] for n in (12, 20)
+    }
     assert kinds == {12: [], 20: ["dense"]}
-    constraints = [s.kind for s in right_hand_side(tied_pendulum()).statements if isinstance(s, Solve)]
+    constraints = [s.kind for s in Program.right_hand_side(tied_pendulum()).statements if isinstance(s, Solve)]
     assert constraints == ["kkt"]
 
 
@@ -249,15 +240,15 @@ def test_a_symbol_that_is_no_argument_is_refused_by_name():
     """A program depends on t, x, p and inputs only."""
     s = symbols("x")
     with pytest.raises(DerivationError, match="'mass'"):
-        program_of([s.graph.symbol("mass") * s.q[0]], s)
+        Program.of([s.graph.symbol("mass") * s.q[0]], s)
 
 
 def test_an_input_without_an_expression_is_refused_where_it_is_needed():
     """A number that nobody gave is never made up."""
     with pytest.raises(DerivationError, match="'F'"):
-        right_hand_side(cart_pole())
+        Program.right_hand_side(cart_pole())
     s = cart_pole().symbols
-    assert program_of([s.q[0]], s).outputs == (s.q[0],)
+    assert Program.of([s.q[0]], s).outputs == (s.q[0],)
 
 
 def test_every_name_becomes_an_identifier_of_its_own():
@@ -321,10 +312,10 @@ def test_what_holds_accelerations_takes_those_of_the_right_hand_side(made):
     equations = made()
     symbols = equations.symbols
     outputs = tuple(3 * a + x * u for a, x, u in zip(symbols.a, symbols.q, symbols.u, strict=True))
-    rhs, along = right_hand_side(equations), program_in_motion(outputs, equations)
+    rhs, along = Program.right_hand_side(equations), Program.in_motion(outputs, equations)
     kinds = [[type(s) for s in program.statements if type(s) is Solve] for program in (rhs, along)]
     assert kinds[0] == kinds[1]
     for v in vectors(rhs):
         n = len(symbols.q)
         right = [3 * a + x * u for a, x, u in zip(v.result[n:], v.x[:n], v.x[n:], strict=True)]
-        assert compiled(along, "numpy")(v.t, v.x, v.p) == pytest.approx(right, rel=1e-9, abs=1e-9)
+        assert RightHandSide.of(along, "numpy")(v.t, v.x, v.p) == pytest.approx(right, rel=1e-9, abs=1e-9)

@@ -24,7 +24,7 @@ from eomgen.equations import Equations
 from eomgen.errors import DerivationError
 from eomgen.mechanics.constraints.closure import Closure
 from eomgen.mechanics.dynamics.accelerations import exact_accelerations
-from eomgen.mechanics.free_bodies.names_of_reactions import named_reactions
+from eomgen.mechanics.free_bodies.names_of_reactions import NamedReaction
 from eomgen.mechanics.free_bodies.solution import Indeterminate
 from eomgen.mechanics.instant.quantities import Quantities
 from eomgen.simulation.reaction_columns import ReactionColumns
@@ -82,7 +82,7 @@ points = ["beam.B"]
 def test_what_has_no_place_or_is_held_by_nothing_is_named(name, culprit):
     """a constraint between coordinates, a potential of coordinates, a body that geometry alone places"""
     with pytest.raises(DerivationError) as caught:
-        named_reactions(derived(name).reactions.balance)
+        NamedReaction.all_of(derived(name).reactions.balance)
     assert culprit in str(caught.value)
 
 
@@ -99,7 +99,7 @@ def test_a_column_is_what_an_output_of_its_name_says(path):
     ]
     state |= dict(zip(equations.graph.symbols.a, a, strict=True))
     state |= multipliers_at(equations, state)
-    for named in named_reactions(reactions.balance):
+    for named in NamedReaction.all_of(reactions.balance):
         (call,) = parse(named.name, references=True).calls
         try:
             pair = reactions.combined(named.combination, named.name) + named.given, quantities.value(call)

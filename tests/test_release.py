@@ -6,8 +6,8 @@ import pytest
 
 import eomgen
 from eomgen.errors import DerivationError
-from eomgen.mechanics.constraints.rows import rows_of_constraint
-from eomgen.mechanics.dynamics.system import System, system_of
+from eomgen.mechanics.constraints.rows import Row
+from eomgen.mechanics.dynamics.system import System
 from eomgen.simulation.phase_models import released, stays_straight
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
@@ -46,9 +46,9 @@ joint = { kind = "placed", at = ["l*cos(theta)", "-l*sin(theta)"] }
 
 def freed(text: str, constraint: str) -> tuple[System, System]:
     """The system before and after."""
-    before = system_of(eomgen.loads(HEAD + text))
+    before = System.of(eomgen.loads(HEAD + text))
     model, modes = released(before, constraint)
-    return before, system_of(model, modes)
+    return before, System.of(model, modes)
 
 
 def status(system: System, constraint: str) -> set[str]:
@@ -60,7 +60,7 @@ def test_a_displacement_stands_last_and_its_rate_is_that_of_the_gap():
     before, after = freed(WIRE, "wire")
     assert [q.name for q in before.symbols.q] == ["s", "theta"]
     assert [q.name for q in after.symbols.q] == ["s", "theta", "wire_gap"]
-    (row,) = rows_of_constraint(after.motion, "wire")
+    (row,) = Row.of_constraint(after.motion, "wire")
     numbers = [0.3, 0.7, 0.2, 0.5, -0.4, 0.9]
     state = dict(zip(after.symbols.x, numbers, strict=True))
     state |= {node: 1.0 for node in after.symbols.parameters.values()}

@@ -13,7 +13,7 @@ from slow_run import in_slow_run, sampled
 import eomgen
 from eomgen.cli import main
 from eomgen.documents.figures import VIEWS, resultants
-from eomgen.model.replaced import range_of
+from eomgen.model.replaced import Range
 from eomgen.results.small_motions.pictures import dashes, roots_over
 from eomgen.runs.single_run import one_turn
 
@@ -60,7 +60,7 @@ def test_roots_on_the_imaginary_axis_are_drawn_on_it():
 def test_small_motions_that_are_drawn_otherwise_are_seen(tmp_path, view):
     """(s 1 - F, -E; K, s M + C)(q, u) = (0, B w) at what is drawn; det = 0 at roots of the values at the colours"""
     found = eomgen.linearize(eomgen.loads(TWO_MASSES))
-    found = replace(found, drawn=view, over=range_of(found.model, "k=20:30:3") if view == "locus" else None)
+    found = replace(found, drawn=view, over=Range.of(found.model, "k=20:30:3") if view == "locus" else None)
     panels = found.picture.saved(tmp_path / "a.svg")
 
     def states(changed):
@@ -86,7 +86,7 @@ def test_small_motions_that_are_drawn_otherwise_are_seen(tmp_path, view):
 def test_values_at_the_colours_are_in_their_unit(tmp_path):
     """alpha = 0.3 rad is 17.19 under [deg], from Python as from the command line"""
     found = eomgen.linearize(MODELS / "rolling_cone.toml")
-    drawn = replace(found, drawn="locus", over=range_of(found.model, "alpha=0.3:0.4:2", declared=False))
+    drawn = replace(found, drawn="locus", over=Range.of(found.model, "alpha=0.3:0.4:2", declared=False))
     (panel,) = drawn.picture.saved(tmp_path / "a.svg")
     assert sorted({*panel.points[0].values}) == pytest.approx(np.degrees([0.3, 0.4]))
 
@@ -155,7 +155,7 @@ def test_a_view_of_nothing_is_refused_in_words(run):
     [("l1=1:3:5", "l1", 1, 3, 5), ("log:l1=1:100:3", "l1", 1, 100, 3), ("l1=0.5,2", "l1", 0.5, 2, 2)],
 )
 def test_a_range_has_its_ends(text, name, first, last, count):
-    found = range_of(eomgen.load(MODELS / "double_pendulum.toml"), text)
+    found = Range.of(eomgen.load(MODELS / "double_pendulum.toml"), text)
     assert (found.name, found.values[0], found.values[-1], len(found.values)) == (name, first, last, count)
     if text.startswith("log"):
         assert found.values[1] == pytest.approx(10)
@@ -164,7 +164,7 @@ def test_a_range_has_its_ends(text, name, first, last, count):
 @pytest.mark.parametrize("text", ["l1", "l1=1:2", "l1=1:2:1", "log:l1=0:2:5", "x=1:2:3", "l1=nan", "l1=1:inf:4", "l1="])
 def test_what_is_no_range_is_refused(text):
     with pytest.raises(eomgen.UsageError) as caught:
-        range_of(eomgen.load(MODELS / "double_pendulum.toml"), text)
+        Range.of(eomgen.load(MODELS / "double_pendulum.toml"), text)
     assert caught.value.fix
 
 

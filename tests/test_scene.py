@@ -19,7 +19,7 @@ import eomgen
 from eomgen.documents.figures import Picture
 from eomgen.documents.letters import NamesArtist, PageBox, dots_along, room_for
 from eomgen.documents.space_drawing import drawing_at_rest, rest_picture, sight
-from eomgen.mechanics.dynamics.system import system_of
+from eomgen.mechanics.dynamics.system import System
 from eomgen.scene import forms, plane_strokes, space_strokes
 from eomgen.scene.bodies import parameters_as_drawn
 from eomgen.scene.making import scene_of_system
@@ -582,7 +582,7 @@ pulled = { kind = "between", points = ["A", "spool.origin"], pull = "F/r^2" }
 )
 def test_a_drum_or_hub_is_drawn_where_no_shape_shows_it_and_turns_with_its_body(shape, rims):
     """A circle of the radius on which the rope lies, about the body's own centre, in its axes; a hub is no disc."""
-    system = system_of(eomgen.loads(SPOOL.replace("SHAPE", shape)))
+    system = System.of(eomgen.loads(SPOOL.replace("SHAPE", shape)))
     known = parameters_as_drawn(system)
     arcs = [m for m in scene_of_system(system).marks if m.role == "rim" and m.form.kind == "arc"]
     found = {(m.form.close, float(evaluate((m.form.radius,), known, FLOAT)[0])) for m in arcs}
@@ -591,7 +591,7 @@ def test_a_drum_or_hub_is_drawn_where_no_shape_shows_it_and_turns_with_its_body(
 
 def test_a_pull_that_is_no_law_of_the_distance_is_a_cylinder_between_its_ends():
     """Between a pin on the ground and a hinge on the body; F/r^2 is a thin line, for nothing is there."""
-    system = system_of(eomgen.loads(SPOOL.replace("SHAPE", "mass = 3\ninertia = 1")))
+    system = System.of(eomgen.loads(SPOOL.replace("SHAPE", "mass = 3\ninertia = 1")))
     marks = scene_of_system(system).marks
     kinds = {
         of: [m.form.kind for m in marks if m.of == of and m.role in ("cylinder", "spring")] for of in ("push", "pulled")

@@ -15,8 +15,8 @@ from hand_made import cart_pole, pendulum, symbols, tied_pendulum
 
 import eomgen
 from eomgen.cli import main
-from eomgen.codegen.program import program_of, right_hand_side
-from eomgen.codegen.rhs import compiled, parameter_vector
+from eomgen.codegen.program import Program
+from eomgen.codegen.rhs import RightHandSide, parameter_vector
 from eomgen.documents.figures import heads_in_symbols, mathtext, over_time, range_without_noise
 from eomgen.errors import UsageError, WriteFailed
 from eomgen.mechanics.dynamics import formulations as recursive
@@ -38,11 +38,11 @@ PENDULUM = {"x0": [1.0, 0.0], "p": [1.0, 1.0, 9.81]}
 
 
 def rhs_of(equations):
-    return compiled(right_hand_side(equations), "numpy")
+    return RightHandSide.of(Program.right_hand_side(equations), "numpy")
 
 
 def energy_of(equations, p):
-    function = compiled(program_of((equations.T, equations.V), equations.symbols, inputs={"F": 0}), "numpy")
+    function = RightHandSide.of(Program.of((equations.T, equations.V), equations.symbols, inputs={"F": 0}), "numpy")
     return lambda t, x: function.many(t, x, p).T
 
 
@@ -51,7 +51,7 @@ def flow(rate, x0, **options) -> Trajectory:
     s = symbols("", "y")
     g, y = s.graph, s.graph.symbol("y")
     s = type(s)(g, s.t, {}, {}, (y,), (), ())
-    return integrate(compiled(program_of([rate(g, y, s.t)], s), "numpy"), x0=[x0], p=[], **options)
+    return integrate(RightHandSide.of(Program.of([rate(g, y, s.t)], s), "numpy"), x0=[x0], p=[], **options)
 
 
 def run(**options) -> Trajectory:
@@ -113,7 +113,7 @@ def test_the_gap_of_a_tie_is_reported():
     """max |phi| of the pendulum whose rod is a closing constraint."""
     equations = tied_pendulum()
     p = [1.0, 1.0, 9.81]
-    gaps = compiled(program_of(equations.phi, equations.symbols), "numpy")
+    gaps = RightHandSide.of(Program.of(equations.phi, equations.symbols), "numpy")
     result = integrate(
         rhs_of(equations),
         time=2.0,
@@ -280,7 +280,7 @@ def test_pages_of_contacts_that_change_without_end_show_a_part():
 def test_a_run_of_no_time_and_one_of_no_states_are_their_starts():
     """time = 0: the start; nq = nu = 0: nothing moves."""
     assert run(time=0).x.tolist() == [[1.0, 0.0]]
-    still = integrate(compiled(program_of((), symbols("")), "numpy"), time=1.0, x0=[], p=[])
+    still = integrate(RightHandSide.of(Program.of((), symbols("")), "numpy"), time=1.0, x0=[], p=[])
     assert still.ok and still.x.shape == (1001, 0) and still.t[-1] == 1.0
 
 
@@ -385,7 +385,9 @@ def test_baumgartes_rows_close_a_gap_as_a_damped_oscillation():
     """phi'' + 2 alpha phi' + beta^2 phi = 0: with alpha = beta from rest phi = phi0 (1 + beta t) exp(-beta t)."""
     system = eomgen.derive(eomgen.loads(TIED)).system
     pulling = recursive.assembled_by_recursion(system).stabilized((5.0, 5.0))
-    found = integrate(compiled(right_hand_side(pulling), "numpy"), time=2.0, x0=[0.6, -0.85, 0, 0], p=[])
+    found = integrate(
+        RightHandSide.of(Program.right_hand_side(pulling), "numpy"), time=2.0, x0=[0.6, -0.85, 0, 0], p=[]
+    )
     gap = (found["x"] ** 2 + found["y"] ** 2 - 1) / 2
     t, first = found.t, (0.6**2 + 0.85**2 - 1) / 2
     assert gap == pytest.approx(first * (1 + 5 * t) * np.exp(-5 * t), abs=1e-8)

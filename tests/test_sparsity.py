@@ -17,13 +17,13 @@ import eomgen
 from eomgen.codegen import kernels
 from eomgen.codegen.kernel_reader import solve_bordered
 from eomgen.codegen.lowering import statements
-from eomgen.codegen.program import Program, Solve, bordered, program_of, right_hand_side
-from eomgen.codegen.rhs import compiled
+from eomgen.codegen.program import Program, Solve
+from eomgen.codegen.rhs import RightHandSide
 from eomgen.codegen.right_answers import vectors
 from eomgen.codegen.targets.c import C, c_text
 from eomgen.mechanics.dynamics.system import EquationsOfMotion
 from eomgen.study.programs import slopes_of
-from eomgen.symbolic.exact.factorization import zeros_of, zeros_with_constraints
+from eomgen.symbolic.exact.factorization import Zeros
 from eomgen.symbolic.expression.formula import cos, sin
 from eomgen.symbolic.expression.node import is_zero
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
@@ -70,7 +70,7 @@ each_case = pytest.mark.parametrize("case", CASES.values(), ids=CASES.keys())
 def at(made: EquationsOfMotion, t: float, x: tuple[float, ...], p: tuple[float, ...]):
     """M, J, forcing and -gamma as arrays."""
     values = [*(e for row in made.M for e in row), *(e for row in made.J for e in row), *made.forcing, *made.gamma]
-    found = compiled(program_of(values, made.symbols), "numpy")(t, x, p)
+    found = RightHandSide.of(Program.of(values, made.symbols), "numpy")(t, x, p)
     n, k = len(made.M), len(made.J)
     M, J, f, gamma = np.split(found, np.cumsum([n * n, k * n, n]))
     return M.reshape(n, n), J.reshape(k, n), f, -gamma
@@ -87,7 +87,7 @@ def whole_systems(case: str):
         M, J, f, g = at(made, 0.0, x, [1.7])
         whole = np.block([[M, -J.T], [J, np.zeros((k, k))]])
         found.append(np.linalg.lstsq(whole, np.concatenate([f, g]), rcond=1e-11)[0][:n])
-    return right_hand_side(made), states, found
+    return Program.right_hand_side(made), states, found
 
 
 @sampled(4)
@@ -96,7 +96,7 @@ def whole_systems(case: str):
 def test_accelerations_are_those_of_the_whole_system(target, case):
     """[[M, -J^T], [J, 0]] [a; lam] = [f; g] by numpy's least squares, no zeros used."""
     program, states, expected = whole_systems(case)
-    rhs = compiled(program, target)
+    rhs = RightHandSide.of(program, target)
     for x, a in zip(states, expected, strict=True):
         assert rhs(0.0, x, [1.7])[len(a) :] == pytest.approx(a, rel=1e-8, abs=1e-8)
 
@@ -113,7 +113,7 @@ def with_vectors(case: str):
 def test_emitted_solves_agree_with_fifty_digits(target, case):
     """dx of every case."""
     program, told = with_vectors(case)
-    function = compiled(program, target)
+    function = RightHandSide.of(program, target)
     for v in told:
         assert np.abs(function(v.t, v.x, v.p) - v.result).max() <= v.tolerance * max(1, *map(abs, v.result))
 
@@ -135,7 +135,7 @@ def slopes_by_differences(name: str):
     found = slopes_of(made)
     assert len(found.solves) > 1
     program = found.program(made)
-    rhs, n = compiled(right_hand_side(made), "numpy"), 2 * len(made.M)
+    rhs, n = RightHandSide.of(Program.right_hand_side(made), "numpy"), 2 * len(made.M)
     x, h, p = np.random.default_rng(1).uniform(-0.3, 0.3, n), 1e-5, [1.7] * len(made.symbols.parameters)
     moved = [(rhs(0.0, x + h * e, p) - rhs(0.0, x - h * e, p)) / (2 * h) for e in np.eye(n)]
     return program, x, p, np.transpose(moved)
@@ -149,7 +149,7 @@ def test_many_right_sides_have_one_factorization(target, name):
     program, x, p, moved = slopes_by_differences(name)
     once = re.findall(r"^ +solve_(?:factors|plain)\(", c_text(program, "m"), flags=re.MULTILINE)
     assert len(once) == 1
-    function, n = compiled(program, target), len(x)
+    function, n = RightHandSide.of(program, target), len(x)
     A = function(0.0, x, p).reshape(n, n)
     assert moved == pytest.approx(A, rel=1e-7, abs=1e-7)
     assert function.many([0.0, 0.0], [x, x], p)[1].reshape(n, n) == pytest.approx(A, rel=1e-11, abs=1e-11)
@@ -159,7 +159,7 @@ def test_many_right_sides_have_one_factorization(target, name):
 def test_nothing_is_lost_along_the_lists(case):
     """A solve that knows its zeros and one that knows none give the same a, whichever of the two factors it takes."""
     made = legs_under_a_plate(**case)
-    solve = bordered(made)
+    solve = Solve.bordered(made)
     x = np.random.default_rng(7).uniform(-0.6, 0.6, size=2 * len(made.M))
     M, J, f, g = at(made, 0.0, x, [0.9])
     order = [made.symbols.a.index(a) for a in solve.unknowns[: len(f)]]
@@ -175,9 +175,9 @@ def test_nothing_is_lost_along_the_lists(case):
 def test_nothing_is_read_beside_the_lists(case, monkeypatch):
     """a(M, J) does not change by a bit where all that the factors leave 0, and all room, holds no number."""
     made = legs_under_a_plate(**case)
-    solve, x = bordered(made), np.random.default_rng(7).uniform(-0.6, 0.6, size=2 * len(made.M))
+    solve, x = Solve.bordered(made), np.random.default_rng(7).uniform(-0.6, 0.6, size=2 * len(made.M))
     entries = (*(e for row in solve.matrix for e in row), *(e for row in solve.border for e in row), *solve.right)
-    values = compiled(program_of(entries, made.symbols), "numpy")(0.0, x, [0.9]).tolist()
+    values = RightHandSide.of(Program.of(entries, made.symbols), "numpy")(0.0, x, [0.9]).tolist()
     n, k = len(solve.matrix), len(solve.border)
     M, J, right = values[: n * n], values[n * n : n * (n + k)], values[n * (n + k) :]
     whole = solve_bordered(M, J, right[:n], right[n:], solve.tables)
@@ -197,7 +197,7 @@ def test_the_lists_hold_what_elimination_fills_in(seed):
     M = [[int(i == j or mask[max(i, j), min(i, j)]) for j in range(9)] for i in range(9)]
     rows = touched.astype(int).tolist()
     half = np.where(mask, rng.uniform(0.1, 1, (9, 9)), 0)
-    for zeros, W in ((zeros_of(M, rows), 0.0), (zeros_with_constraints(M, rows), 1.0)):
+    for zeros, W in ((Zeros.of(M, rows), 0.0), (Zeros.with_constraints(M, rows), 1.0)):
         J = np.where(touched, rng.uniform(0.1, 1, (5, 9)), 0)
         numbers = half + half.T + 20 * np.eye(9) + W * J.T @ J
         C = np.linalg.cholesky(numbers)
@@ -212,9 +212,9 @@ def test_the_lists_hold_what_elimination_fills_in(seed):
 
 def test_a_leg_more_costs_what_a_leg_costs():
     """Legs meet only in the plate: L fills in nowhere, and without the multipliers the operations grow in step."""
-    degrees = [sum(map(len, bordered(legs_under_a_plate(n)).zeros[0].partners)) for n in (2, 4, 8)]
+    degrees = [sum(map(len, Solve.bordered(legs_under_a_plate(n)).zeros[0].partners)) for n in (2, 4, 8)]
     assert degrees == [3, 3, 3]
-    assert [len(reach) for reach in bordered(legs_under_a_plate(4)).zeros[0].reach] == [5] * 8
+    assert [len(reach) for reach in Solve.bordered(legs_under_a_plate(4)).zeros[0].reach] == [5] * 8
 
 
 class Counted(float):
@@ -322,7 +322,7 @@ def long_row(n: int) -> EquationsOfMotion:
 @cache
 def long_program(n: int):
     """(program in parts, its vectors), for all languages once."""
-    program = right_hand_side(long_row(n))
+    program = Program.right_hand_side(long_row(n))
     assert pieces(program) > 2
     assert any(isinstance(s, Solve) for s in program.statements) is (n == 20)
     return program, vectors(program, count=2)
@@ -334,7 +334,7 @@ def long_program(n: int):
 def test_a_long_program_in_parts_returns_what_its_graph_does(target, n):
     """Parts hand each other what they share: dx against 50 digits."""
     program, told = long_program(n)
-    function = compiled(program, target)
+    function = RightHandSide.of(program, target)
     for v in told:
         assert np.abs(function(v.t, v.x, v.p) - v.result).max() <= v.tolerance * max(1, *map(abs, v.result))
 

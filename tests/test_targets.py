@@ -22,8 +22,8 @@ from tools import each_target, every_target, marked, needs, tool
 import eomgen
 from eomgen import files
 from eomgen.codegen import build
-from eomgen.codegen.program import program_of, right_hand_side
-from eomgen.codegen.rhs import compiled
+from eomgen.codegen.program import Program
+from eomgen.codegen.rhs import RightHandSide
 from eomgen.codegen.right_answers import outputs_at, single_vectors, vectors
 from eomgen.codegen.targets import ALL, wasm
 from eomgen.codegen.targets.base import Description, Role
@@ -70,8 +70,8 @@ def test_every_operation_of_the_graph_has_its_value(target):
     s = symbols("a b positive unit")
     formulas = one_of_each(s.graph, *s.q)
     assert {x.op for x in formulas.values() if isinstance(x, Node)} >= {*BINARY, *UNARY, "select"} - {"tan"}
-    program = program_of(list(formulas.values()), s)
-    function = compiled(program, target)
+    program = Program.of(list(formulas.values()), s)
+    function = RightHandSide.of(program, target)
     rng = random.Random(1)
     states = [[rng.uniform(-2, 2), rng.uniform(-2, 2), rng.uniform(0.1, 3), rng.uniform(-1, 1)] for _ in range(25)]
     many = function.many(0, np.hstack([states, np.zeros((25, 4))]), [])
@@ -114,8 +114,8 @@ def test_random_expressions_have_the_symbols_value(target, seed):
     leaves = [*s.q, *s.parameters.values(), *s.inputs.values(), s.t]
     outputs = random_expression(rng, s.graph, leaves, 40)
     (own,) = random_expression(rng, s.graph, [s.t, *s.parameters.values()], 8)[-1:]
-    program = program_of(outputs, s, inputs={"F": own})
-    function = compiled(program, target)
+    program = Program.of(outputs, s, inputs={"F": own})
+    function = RightHandSide.of(program, target)
     for given in (None, 0.7):
         t, x, p = rng.uniform(0, 1), [rng.uniform(-1, 1) for _ in range(4)], [rng.uniform(0.5, 2) for _ in range(2)]
         values = dict(zip([s.t, *s.q, *s.u, *s.parameters.values()], [t, *x, *p], strict=True))
@@ -142,8 +142,8 @@ SYSTEMS = {
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_a_right_hand_side_agrees_with_fifty_digits(target, name):
     """dx of every way of solving: written out, looped, bordered, and bordered with dependent rows."""
-    program = right_hand_side(SYSTEMS[name]())
-    function = compiled(program, target)
+    program = Program.right_hand_side(SYSTEMS[name]())
+    function = RightHandSide.of(program, target)
     for v in vectors(program):
         found = function(v.t, v.x, v.p, v.inputs or ())
         assert np.abs(found - v.result).max() <= v.tolerance * max(1, *map(abs, v.result))
@@ -153,21 +153,21 @@ def test_a_right_hand_side_agrees_with_fifty_digits(target, name):
 def test_a_tie_said_three_times_moves_the_pendulum_as_one_does(target):
     """The accelerations are those of the independent rows."""
     x, p = [0.6, -0.8, 0.4, 0.3], [1.2, 1.0, 9.81]
-    once, thrice = (compiled(right_hand_side(tied_pendulum(n)), target)(0, x, p) for n in (1, 3))
+    once, thrice = (RightHandSide.of(Program.right_hand_side(tied_pendulum(n)), target)(0, x, p) for n in (1, 3))
     assert thrice == pytest.approx(once, rel=1e-12)
 
 
 @each_target
 def test_the_pendulum_falls_as_it_should(target):
     """theta'' = -g/l sin(theta)."""
-    found = compiled(right_hand_side(pendulum()), target)(0, [0.5, 2.0], [3.0, 0.5, 9.81])
+    found = RightHandSide.of(Program.right_hand_side(pendulum()), target)(0, [0.5, 2.0], [3.0, 0.5, 9.81])
     assert found == pytest.approx([2.0, -9.81 / 0.5 * math.sin(0.5)])
 
 
 @each_target
 def test_a_model_without_coordinates_runs(target):
     """nq = nu = 0: dx is empty."""
-    function = compiled(program_of((), symbols("", "m")), target)
+    function = RightHandSide.of(Program.of((), symbols("", "m")), target)
     assert function(0, [], [1.0]).shape == (0,) and function.many([0.0, 1.0], np.empty((2, 0)), [1]).shape == (2, 0)
 
 
@@ -176,7 +176,7 @@ def test_outside_a_domain_the_value_is_not_a_number(target):
     """sqrt(-1) and 1/0 are no exceptions: nan and inf, as in C; the other outputs keep their values."""
     s = symbols("x", "k")
     x, k = s.q[0], s.parameters["k"]
-    function = compiled(program_of([s.graph.sqrt(x), 1 / (x + 1), x * 2, 1 / k], s), target)
+    function = RightHandSide.of(Program.of([s.graph.sqrt(x), 1 / (x + 1), x * 2, 1 / k], s), target)
     with np.errstate(all="raise"):
         found = function(0, [-1.0, 0], [0.0])
     assert np.isnan(found[0]) and np.isinf(found[1]) and found[2] == -2 and np.isinf(found[3])
@@ -196,8 +196,8 @@ def test_what_has_no_value_gives_none_to_what_is_made_of_it(target):
     later = y + 1  # made after `lost`, and so the second argument of what has no order of its own
     made |= {f"{op} of what came first": g.call(op, lost, later) for op in ("min", "max", "less", "less_equal")}
     made |= {"chosen": g.select(g.call("less", x, y), lost, y), "by nothing": g.select(g.call("less", lost, y), x, y)}
-    program = program_of([*made.values(), g.select(g.call("less", y, x), lost, y)], s)
-    function, state = compiled(program, target), [-1.0, 2.0, 0.0, 0.0]
+    program = Program.of([*made.values(), g.select(g.call("less", y, x), lost, y)], s)
+    function, state = RightHandSide.of(program, target), [-1.0, 2.0, 0.0, 0.0]
     symbols_say = evaluate(program.outputs, dict(zip(s.q, state, strict=False)), FLOAT)
     for found in (function(0, state, []), function.many([0.0], [state], [])[0], symbols_say):
         assert [name for name, value in zip(made, found, strict=False) if value == value] == [] and found[-1] == 2
@@ -208,12 +208,12 @@ def test_vectors_hold_states_without_a_value(target, tmp_path):
     """min(sqrt(y), x) beside x + y: nan is expected where the root has no value, and what else there is."""
     s = symbols("x y")
     (x, y), g = s.q, s.graph
-    program = program_of([g.call("min", g.sqrt(y), x), x + y], s)
+    program = Program.of([g.call("min", g.sqrt(y), x), x + y], s)
     found = vectors(program)
     partial = [v for v in found if math.isnan(v.result[0])]
     assert 1 <= len(partial) < len(found) and all(v.result[1] == pytest.approx(v.x[0] + v.x[1]) for v in partial)
     for v in found:
-        assert compiled(program, target)(v.t, v.x, v.p) == pytest.approx(v.result, rel=1e-12, nan_ok=True)
+        assert RightHandSide.of(program, target)(v.t, v.x, v.p) == pytest.approx(v.result, rel=1e-12, nan_ok=True)
     texts = texts_of("roots", [(program, Description("Roots", "", {}, found))], targets=[target])
     written = Written(target, texts, program, "roots", Role.RHS, found)
     assert not [*unwritten(texts, [written])]
@@ -250,9 +250,9 @@ def test_names_of_the_language_are_harmless(target):
     s = symbols("int double t_ v1 solve_M M sin θ", "lambda I E x p c dx NULL printf é Math await rhs", "for inputs")
     arguments = [*s.q, *s.parameters.values(), *s.inputs.values()]
     outputs = [a + i * b for i, (a, b) in enumerate(zip(arguments, reversed(arguments), strict=True), start=2)]
-    program = program_of(outputs, s, inputs={"for": s.t, "inputs": 2 * s.t})
+    program = Program.of(outputs, s, inputs={"for": s.t, "inputs": 2 * s.t})
     values = [float(i) for i in range(len(s.q) * 2)], [0.5 + i for i in range(len(s.parameters))]
-    function = compiled(program, target)
+    function = RightHandSide.of(program, target)
     right = outputs_at(
         program,
         dict(zip([s.t, *s.q, *s.u, *s.parameters.values()], [0.25, *values[0], *values[1]], strict=True)),
@@ -264,7 +264,7 @@ def test_names_of_the_language_are_harmless(target):
 @each_target
 def test_threads_do_not_disturb_one_another(target):
     """The same function from several threads with different parameters."""
-    function = compiled(right_hand_side(pendulum()), target)
+    function = RightHandSide.of(Program.right_hand_side(pendulum()), target)
     wrong = []
 
     def work(l: float) -> None:
@@ -284,7 +284,7 @@ def test_threads_do_not_disturb_one_another(target):
 @each_target
 def test_results_are_the_callers_own(target):
     """A second call leaves the first one's array as it was; changed parameters are seen."""
-    function = compiled(right_hand_side(pendulum()), target)
+    function = RightHandSide.of(Program.right_hand_side(pendulum()), target)
     p = np.array([1.0, 1.0, 9.81])
     first = function(0, [0.5, 2.0], p)
     kept = first.copy()
@@ -296,7 +296,7 @@ def test_results_are_the_callers_own(target):
 @each_target
 def test_arguments_of_the_wrong_length_are_named(target):
     """What is wrong, how many there are, and which there should be."""
-    function = compiled(right_hand_side(cart_pole(F=0)), target)
+    function = RightHandSide.of(Program.right_hand_side(cart_pole(F=0)), target)
     right = [0.0] * 4, [1.0] * 4
     with pytest.raises(UsageError, match="x has 3 entries, not 4: x, theta, x', theta'"):
         function(0, [0.0] * 3, right[1])
@@ -312,7 +312,7 @@ def test_a_number_too_large_for_a_double_is_refused():
     """10^400 has no double."""
     s = symbols("x")
     with pytest.raises(DerivationError, match="too large"):
-        compiled(program_of([s.q[0] * 10**400], s), "numpy")
+        RightHandSide.of(Program.of([s.q[0] * 10**400], s), "numpy")
 
 
 # -- text and files -------------------------------------------------------------------------------
@@ -324,7 +324,7 @@ def described(program) -> Description:
 
 
 def written(tmp_path, target, equations=None):
-    program = right_hand_side(equations or cart_pole(F=0))
+    program = Program.right_hand_side(equations or cart_pole(F=0))
     texts = texts_of("cart-pole", [(program, described(program))], targets=[target])
     return files.write_all(tmp_path / "new" / "folder", texts)
 
@@ -416,7 +416,7 @@ def test_the_c_files_compile_without_a_warning_and_pass_their_own_test(name, tmp
 @needs_cc
 def test_a_remark_uses_no_argument(tmp_path):
     """What a comment names is not read: (void)t stands there all the same, and nothing warns."""
-    program = right_hand_side(pendulum())
+    program = Program.right_hand_side(pendulum())
     remarks = {"theta": "angle at t, from p and c, no inputs"}
     reported = Description("Pendulum", "", remarks, vectors(program))
     texts = texts_of("pendulum", [(program, reported)], targets=["c"])
@@ -485,7 +485,7 @@ def test_the_python_file_needs_nothing_of_ours(tmp_path):
 def test_vectors_in_single_precision_have_no_number_below_its_range():
     """1e-51 is 0 in them: as 1e-51f it stops a strict compiler; nan stays."""
     s = symbols("x")
-    program = program_of([s.q[0] * Fraction(1, 10**51), s.q[0] * 2], s)
+    program = Program.of([s.q[0] * Fraction(1, 10**51), s.q[0] * 2], s)
     plain = vectors(program)
     found = single_vectors(program, plain)
     assert any(0 < abs(v.result[0]) < 1e-45 for v in plain) and all(v.result[0] == 0 for v in found)
@@ -504,7 +504,7 @@ def test_test_vectors_say_what_they_are(tmp_path):
 
 def test_files_of_several_targets_lie_each_in_a_folder_of_its_own(tmp_path):
     """One target writes into DIR, several into DIR/X/, each with the same test vectors."""
-    program = right_hand_side(pendulum())
+    program = Program.right_hand_side(pendulum())
     one, several = (
         files.write_all(tmp_path / str(len(names)), texts_of("p", [(program, described(program))], targets=names))
         for names in (TARGETS[:1], TARGETS)
@@ -520,4 +520,4 @@ def test_files_of_several_targets_lie_each_in_a_folder_of_its_own(tmp_path):
 def test_an_unknown_target_is_refused_with_those_that_there_are():
     """fix: the names of ALL."""
     with pytest.raises(UsageError, match="numpy, c"):
-        compiled(right_hand_side(pendulum()), "algol")
+        RightHandSide.of(Program.right_hand_side(pendulum()), "algol")

@@ -24,7 +24,7 @@ from eomgen.mechanics.free_bodies.wrenches import Axes
 from eomgen.model import outputs
 from eomgen.model.outputs.base import OutputFunction, OutputSource
 from eomgen.page.figure import rest_figure
-from eomgen.simulation import is_of_a_run
+from eomgen.simulation import WholeRun
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = ROOT / "docs" / "examples"
@@ -164,7 +164,7 @@ def function_page(function: OutputFunction, homes: dict[str, str]) -> str:
 
 def answered(model: eomgen.Model, names: list[str]) -> str:
     """The answers to some of what a model asks."""
-    if any(is_of_a_run(model.outputs[name]) for name in names):
+    if any(WholeRun.answers(model.outputs[name]) for name in names):
         found = eomgen.simulate(model, time=10).quantities
         units = model.units_of(names)
         rows = [f"| `{name}` | | {found[name].value / units[name].size:.6g} {units[name]} |" for name in names]

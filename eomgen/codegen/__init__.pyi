@@ -21,9 +21,6 @@ from eomgen.codegen.program import Solve as Solve
 # The state, or one state a row, with every quaternion over its norm; 0 stays
 from eomgen.codegen.program import at_unit_norms as at_unit_norms
 
-# Accelerations and multipliers from one system: M a - J^T lam = forcing, J a = -gamma
-from eomgen.codegen.program import bordered as bordered
-
 # The letters, digits and underscores nearest to a name: 'ω₁' -> 'omega1', 'arm-7' -> 'arm_7'
 from eomgen.codegen.program import identifier as identifier
 
@@ -33,15 +30,6 @@ from eomgen.codegen.program import is_short as is_short
 # q' = N u + nu
 from eomgen.codegen.program import kinematic_rates as kinematic_rates
 
-# Outputs that hold accelerations, those of the motion, by the way that takes the fewest operations
-from eomgen.codegen.program import program_in_motion as program_in_motion
-
-# Any outputs as a program
-from eomgen.codegen.program import program_of as program_of
-
-# The right-hand side dx = (N u + nu, a), by the way that takes the fewest operations
-from eomgen.codegen.program import right_hand_side as right_hand_side
-
 # (t, x) -> dx of a right-hand side; `address` is where a compiled one lies, None of others
 from eomgen.codegen.rhs import RateFunction as RateFunction
 
@@ -50,12 +38,6 @@ from eomgen.codegen.rhs import RightHandSide as RightHandSide
 
 # The accelerations and multipliers at one state; none has a single value where branches meet
 from eomgen.codegen.rhs import closing_accelerations as closing_accelerations
-
-# The program as a function
-from eomgen.codegen.rhs import compiled as compiled
-
-# Several programs as functions, one library of them where they run in C; with the errors of `compiled`
-from eomgen.codegen.rhs import compiled_together as compiled_together
 
 # Result of a compiler; None where there is none, or it fails: that, and what is done instead, is said once
 from eomgen.codegen.rhs import in_c as in_c

@@ -37,7 +37,7 @@ from eomgen.codegen.statements import (
     Table,
 )
 from eomgen.frozen import dataclass
-from eomgen.symbolic.expression import Node, Sampled, Scalar, sampled_of
+from eomgen.symbolic.expression import Node, Sampled, Scalar
 
 
 @dataclass(frozen=True)
@@ -235,7 +235,7 @@ def _kernels(layout: Layout) -> tuple[tuple[Table, ...], tuple[Function, ...]]:
         tables |= {t.name: t for t in read}
         functions |= {f.name: f for f in called}
     for number, name in layout.sampled.items():
-        own, function = _samples(sampled_of(number), name)
+        own, function = _samples(Sampled.of(number), name)
         own_way = "through_samples" in layout.language.defined
         called = [] if own_way else kernel("through_samples", (), layout.language)[1]
         tables |= {t.name: t for t in own}

@@ -20,7 +20,7 @@ from eomgen.codegen.statements import INT, Table
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion
-from eomgen.symbolic.exact import PlaceLists, Zeros, factorization, zeros_of, zeros_with_constraints
+from eomgen.symbolic.exact import PlaceLists, Zeros, factorization
 from eomgen.symbolic.expression import FREE, Count, Node, Scalar, ScalarRow, Symbols, is_zero, order, substituted
 
 UNROLLED_AT_MOST = 1000  # operations of a factorization written out; a dense one of n = 12 takes 914
@@ -67,12 +67,12 @@ class Solve:
     @cached_property
     def plain(self) -> Zeros:
         """Entries that may not be zero in the factors of the matrix."""
-        return zeros_of(self.matrix, self.border)
+        return Zeros.of(self.matrix, self.border)
 
     @property
     def zeros(self) -> tuple[Zeros, Zeros]:
         """The same of the matrix, and of matrix + border^T W border."""
-        return self.plain, zeros_with_constraints(self.matrix, self.border)
+        return self.plain, Zeros.with_constraints(self.matrix, self.border)
 
     @property
     def places(self) -> tuple[frozenset[int], frozenset[int]]:
@@ -99,6 +99,13 @@ class Solve:
     def operations(self) -> int:
         """L D L^T, and with a border the system of the multipliers, made and solved, and all solved once more."""
         return self.plain.operations
+
+    @classmethod
+    def bordered(cls, equations: EquationsOfMotion) -> Solve:
+        """Accelerations and multipliers from one system: M a - J^T lam = forcing, J a = -gamma."""
+        symbols = equations.symbols
+        right = (*equations.forcing, *(-g for g in equations.gamma))
+        return _ordered(equations.M, equations.J, right, symbols.a + symbols.lam, equations.alike)
 
 
 def _joined(name: str, begin: str, ways: Sequence[PlaceLists]) -> tuple[Table, Table]:
@@ -162,35 +169,78 @@ class Program:
             tuple(place[x] for x in symbols) for symbols in unit_quaternions if all(x in place for x in symbols)
         )
 
+    @classmethod
+    def of(
+        cls,
+        outputs: Sequence[Scalar],
+        symbols: Symbols,
+        *,
+        inputs: Mapping[str, Scalar] | None = None,
+        solve: Solve | None = None,
+        further: Sequence[Solve] = (),
+        accelerations: tuple[Node, ...] = (),
+    ) -> Program:
+        """Any outputs as a program.
 
-def right_hand_side(equations: EquationsOfMotion) -> Program:
-    """The right-hand side dx = (N u + nu, a, z'), by the way that takes the fewest operations.
+        Args:
+            outputs: expressions in `symbols`, and in the unknowns of `solve`.
+            symbols: the arguments' names.
+            inputs: the model's own expression of each input, in t and parameters.
+            solve: the linear system behind a and lam, where the outputs hold these.
+            further: others with its matrix and border, whose right sides may hold a and lam.
+            accelerations: a, where it is an argument.
+        Raises:
+            DerivationError: an output holds a symbol that is none of the arguments, or an input has no expression.
+        """
+        outputs, solves = tuple(outputs), (*([solve] if solve else []), *further)
+        needed = order([*outputs, *(x for each in solves for x in each.entries)])
+        defaults = _defaults(needed, symbols, inputs or {})
+        own = order(defaults)
+        _refuse_strangers([*needed, *own], symbols, (*accelerations, *(x for each in solves for x in each.unknowns)))
+        depth = _depths([*needed, *own], frozenset(symbols.parameters.values()))
+        hoisted = [x for x in needed if depth[x] == _FIXED and x.op not in FREE]
+        moving = [x for x in needed if depth[x] == _MOVING and x.op not in FREE]
+        known = frozenset(hoisted)
+        return cls(
+            symbols=symbols,
+            defaults=defaults,
+            preamble=tuple(Assign(x) for x in own if _is_computed(x, depth) and x not in known),
+            hoisted=tuple(map(Assign, hoisted)),
+            statements=_scheduled(moving, (solves[:1], solves[1:])),
+            outputs=outputs,
+            count=Count(len(moving) + _solving(solves), len(hoisted)),
+            accelerations=accelerations,
+        )
 
-    M a = forcing, or with constraint rows  [[M, -J^T], [J, 0]] [a; lam] = [forcing; -gamma].
+    @classmethod
+    def right_hand_side(cls, equations: EquationsOfMotion) -> Program:
+        """The right-hand side dx = (N u + nu, a, z'), by the way that takes the fewest operations.
 
-    Raises:
-        DerivationError: the mass matrix is singular at all states.
-    """
-    outputs = (*kinematic_rates(equations), *equations.symbols.a, *equations.state_rates)
-    return program_in_motion(outputs, equations)
+        M a = forcing, or with constraint rows  [[M, -J^T], [J, 0]] [a; lam] = [forcing; -gamma].
 
+        Raises:
+            DerivationError: the mass matrix is singular at all states.
+        """
+        outputs = (*kinematic_rates(equations), *equations.symbols.a, *equations.state_rates)
+        return Program.in_motion(outputs, equations)
 
-def program_in_motion(outputs: ScalarRow, equations: EquationsOfMotion) -> Program:
-    """Outputs that hold accelerations, those of the motion, by the way that takes the fewest operations.
+    @classmethod
+    def in_motion(cls, outputs: ScalarRow, equations: EquationsOfMotion) -> Program:
+        """Outputs that hold accelerations, those of the motion, by the way that takes the fewest operations.
 
-    Args:
-        outputs: expressions in the symbols of the equations, accelerations among them.
-    Raises:
-        DerivationError: the mass matrix is singular at all states.
-    """
-    if equations.J and not equations.friction:
-        return _program(outputs, equations, bordered(equations))
-    candidates = [_explicit(outputs, equations, a) for a in _explicit_accelerations(equations)]
-    if not candidates or not (equations.friction or is_short(equations)):
-        solve = _ordered(equations.M, (), equations.forcing, equations.symbols.a)
-        if all(solve.operations < program.count.total for program in candidates):
-            candidates.append(_program(outputs, equations, solve))
-    return min(candidates, key=lambda program: program.count.total)
+        Args:
+            outputs: expressions in the symbols of the equations, accelerations among them.
+        Raises:
+            DerivationError: the mass matrix is singular at all states.
+        """
+        if equations.J and not equations.friction:
+            return _program(outputs, equations, Solve.bordered(equations))
+        candidates = [_explicit(outputs, equations, a) for a in _explicit_accelerations(equations)]
+        if not candidates or not (equations.friction or is_short(equations)):
+            solve = _ordered(equations.M, (), equations.forcing, equations.symbols.a)
+            if all(solve.operations < program.count.total for program in candidates):
+                candidates.append(_program(outputs, equations, solve))
+        return min(candidates, key=lambda program: program.count.total)
 
 
 def _explicit_accelerations(equations: EquationsOfMotion) -> list[ScalarRow]:
@@ -211,7 +261,7 @@ def _explicit(outputs: ScalarRow, equations: EquationsOfMotion, a: ScalarRow) ->
 
 
 def _program(outputs: ScalarRow, equations: EquationsOfMotion, solve: Solve | None = None) -> Program:
-    return program_of(outputs, equations.symbols, inputs=equations.inputs, solve=solve)
+    return Program.of(outputs, equations.symbols, inputs=equations.inputs, solve=solve)
 
 
 def kinematic_rates(equations: EquationsOfMotion) -> ScalarRow:
@@ -224,13 +274,6 @@ def kinematic_rates(equations: EquationsOfMotion) -> ScalarRow:
                 value = value + entry * speed
         rates.append(value)
     return tuple(rates)
-
-
-def bordered(equations: EquationsOfMotion) -> Solve:
-    """Accelerations and multipliers from one system: M a - J^T lam = forcing, J a = -gamma."""
-    symbols = equations.symbols
-    right = (*equations.forcing, *(-g for g in equations.gamma))
-    return _ordered(equations.M, equations.J, right, symbols.a + symbols.lam, equations.alike)
 
 
 def _ordered(
@@ -247,7 +290,7 @@ def _ordered(
     order = factorization.elimination_order(M)
     matrix = tuple(tuple(M[max(i, j)][min(i, j)] for j in order) for i in order)
     border = [tuple(row[j] for j in order) for row in J]
-    reach = [frozenset(places) for places in zeros_of(matrix, border).reach]
+    reach = [frozenset(places) for places in Zeros.of(matrix, border).reach]
     rows = factorization.elimination_order([[int(not one.isdisjoint(other)) for other in reach] for one in reach])
     places = [*order, *(len(M) + m for m in rows)]
     return Solve(
@@ -256,48 +299,6 @@ def _ordered(
         tuple(right[i] for i in places),
         tuple(unknowns[i] for i in places),
         tuple(alike[m] for m in rows) if alike else (),
-    )
-
-
-def program_of(
-    outputs: Sequence[Scalar],
-    symbols: Symbols,
-    *,
-    inputs: Mapping[str, Scalar] | None = None,
-    solve: Solve | None = None,
-    further: Sequence[Solve] = (),
-    accelerations: tuple[Node, ...] = (),
-) -> Program:
-    """Any outputs as a program.
-
-    Args:
-        outputs: expressions in `symbols`, and in the unknowns of `solve`.
-        symbols: the arguments' names.
-        inputs: the model's own expression of each input, in t and parameters.
-        solve: the linear system behind a and lam, where the outputs hold these.
-        further: others with its matrix and border, whose right sides may hold a and lam.
-        accelerations: a, where it is an argument.
-    Raises:
-        DerivationError: an output holds a symbol that is none of the arguments, or an input has no expression.
-    """
-    outputs, solves = tuple(outputs), (*([solve] if solve else []), *further)
-    needed = order([*outputs, *(x for each in solves for x in each.entries)])
-    defaults = _defaults(needed, symbols, inputs or {})
-    own = order(defaults)
-    _refuse_strangers([*needed, *own], symbols, (*accelerations, *(x for each in solves for x in each.unknowns)))
-    depth = _depths([*needed, *own], frozenset(symbols.parameters.values()))
-    hoisted = [x for x in needed if depth[x] == _FIXED and x.op not in FREE]
-    moving = [x for x in needed if depth[x] == _MOVING and x.op not in FREE]
-    known = frozenset(hoisted)
-    return Program(
-        symbols=symbols,
-        defaults=defaults,
-        preamble=tuple(Assign(x) for x in own if _is_computed(x, depth) and x not in known),
-        hoisted=tuple(map(Assign, hoisted)),
-        statements=_scheduled(moving, (solves[:1], solves[1:])),
-        outputs=outputs,
-        count=Count(len(moving) + _solving(solves), len(hoisted)),
-        accelerations=accelerations,
     )
 
 

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from eomgen.codegen.batching import ProgramInLanes
-from eomgen.codegen.program import Program, bordered, program_of
+from eomgen.codegen.program import Program, Solve
 from eomgen.codegen.targets import ALL
 from eomgen.codegen.targets.base import Address, Functions, Role, Target
 from eomgen.codegen.targets.c import c_together
@@ -148,6 +148,39 @@ class RightHandSide:
             raise _wrong_length("p", self.parameters, values.size)
         return values
 
+    @classmethod
+    def of(cls, program: Program, target: str | None = None, *, x0: Any = None, p0: Any = None) -> RightHandSide:
+        """The program as a function.
+
+        Args:
+            program: the compiled program.
+            target: "numpy", "c", or None: C where there is a compiler, else numpy, said once on stderr.
+            x0, p0: start and parameter values for the function's attributes.
+        Raises:
+            UsageError: an unknown target.
+            ToolMissing: "c" without a compiler.
+            RunFailed: "c", and the compiler fails.
+        """
+        if target is not None:
+            return cls(program, target_named(target).load(program), target, x0, p0)
+        found = in_c(
+            lambda: RightHandSide.of(program, "c", x0=x0, p0=p0),
+            "the equations run in numpy, some 30 times slower",
+        )
+        return RightHandSide.of(program, "numpy", x0=x0, p0=p0) if found is None else found
+
+    @staticmethod
+    def compiled_together(programs: Sequence[Program], target: str | None = None) -> tuple[RightHandSide, ...]:
+        """Several programs as functions, one library of them where they run in C; with the errors of `of`."""
+        if target in (None, "c"):
+            with suppress(*([RunFailed, ToolMissing] if target is None else [])):
+                made = c_together(programs)
+                return tuple(
+                    RightHandSide(program, functions, "c", None, None)
+                    for program, functions in zip(programs, made, strict=True)
+                )
+        return tuple(RightHandSide.of(program, target) for program in programs)
+
 
 class RateFunction:
     """(t, x) -> dx of a right-hand side; `address` is where a compiled one lies, None of others."""
@@ -158,24 +191,6 @@ class RateFunction:
 
     def __call__(self, t: float, x: Any) -> np.ndarray:
         return self._one(t, x, self._known, None)
-
-
-def compiled(program: Program, target: str | None = None, *, x0: Any = None, p0: Any = None) -> RightHandSide:
-    """The program as a function.
-
-    Args:
-        program: the compiled program.
-        target: "numpy", "c", or None: C where there is a compiler, else numpy, said once on stderr.
-        x0, p0: start and parameter values for the function's attributes.
-    Raises:
-        UsageError: an unknown target.
-        ToolMissing: "c" without a compiler.
-        RunFailed: "c", and the compiler fails.
-    """
-    if target is not None:
-        return RightHandSide(program, target_named(target).load(program), target, x0, p0)
-    found = in_c(lambda: compiled(program, "c", x0=x0, p0=p0), "the equations run in numpy, some 30 times slower")
-    return compiled(program, "numpy", x0=x0, p0=p0) if found is None else found
 
 
 def in_c(make: Callable[[], _Made], otherwise: str) -> _Made | None:
@@ -189,19 +204,7 @@ def in_c(make: Callable[[], _Made], otherwise: str) -> _Made | None:
 
 def _compiled_again(program: Program, target: str | None, x0: Any, p0: Any) -> RightHandSide:
     """A right-hand side out of a pickle."""
-    return compiled(program, target, x0=x0, p0=p0)
-
-
-def compiled_together(programs: Sequence[Program], target: str | None = None) -> tuple[RightHandSide, ...]:
-    """Several programs as functions, one library of them where they run in C; with the errors of `compiled`."""
-    if target in (None, "c"):
-        with suppress(*([RunFailed, ToolMissing] if target is None else [])):
-            made = c_together(programs)
-            return tuple(
-                RightHandSide(program, functions, "c", None, None)
-                for program, functions in zip(programs, made, strict=True)
-            )
-    return tuple(compiled(program, target) for program in programs)
+    return RightHandSide.of(program, target, x0=x0, p0=p0)
 
 
 def target_named(name: str) -> Target:
@@ -270,8 +273,8 @@ def closing_accelerations(equations: EquationsOfMotion, t: float, x: np.ndarray,
     if not names:
         return Accelerations({}, {})
     outputs = (*symbols.a, *symbols.lam, *(entry for row in equations.J for entry in row))
-    program = program_of(outputs, symbols, inputs=system.inputs, solve=bordered(equations))
-    values = compiled(program, "numpy")(t, x, p)
+    program = Program.of(outputs, symbols, inputs=system.inputs, solve=Solve.bordered(equations))
+    values = RightHandSide.of(program, "numpy")(t, x, p)
     a, lam, J = np.split(values, [len(names), len(names) + len(rows)])
     left = _left(J.reshape(len(rows), len(names)))
     if len(left) and len(rows) - len(left) < Rank(system.constraints).rank():

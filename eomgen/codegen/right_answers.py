@@ -11,7 +11,7 @@ import numpy as np
 
 from eomgen.codegen.kernel_reader import solve_bordered
 from eomgen.codegen.program import Program, Solve, at_unit_norms
-from eomgen.codegen.rhs import RightHandSide, compiled
+from eomgen.codegen.rhs import RightHandSide
 from eomgen.codegen.targets.base import Called, TestVector
 from eomgen.errors import DerivationError
 from eomgen.symbolic.expression import Fraction, Node
@@ -43,7 +43,7 @@ def vectors(
         DerivationError: no states were found at which the right-hand side has a value.
     """
     rng = random.Random(seed)
-    floats = compiled(program, "numpy")
+    floats = RightHandSide.of(program, "numpy")
     found: list[TestVector] = []
     partial: list[TestVector] = []
     torn: list[TestVector] = []
@@ -200,7 +200,7 @@ GROWN = 8  # times what the arguments' rounding does: that of all operations
 
 def single_vectors(program: Program, vectors: Sequence[TestVector]) -> tuple[TestVector, ...]:
     """The vectors with the tolerances of single precision, measured at states that differ by rounding only."""
-    rhs, rng = compiled(program, "numpy"), random.Random(1)
+    rhs, rng = RightHandSide.of(program, "numpy"), random.Random(1)
 
     def beside(values: Sequence[float]) -> list[float]:
         return [x * (1 + rng.choice((-1, 1)) * tolerances.SINGLE_ROUNDING) for x in values]

@@ -26,7 +26,7 @@ from eomgen.errors import Problem, UsageError
 from eomgen.frozen import Pickled, dataclass
 from eomgen.model import Model, Taken, nearest
 from eomgen.proof import Certificate
-from eomgen.symbolic.expression import AS_WRITTEN, Graph, Node, Scalar, TableFunction, order, parse, sampled_of
+from eomgen.symbolic.expression import AS_WRITTEN, Graph, Node, Sampled, Scalar, TableFunction, order, parse
 from eomgen.symbolic.print import Notation, Symbol
 
 DISTRUST = "the certificate FAILS: do not trust this result"
@@ -258,7 +258,7 @@ def tables_called(document: Document) -> dict[str, TableFunction]:
     while parts:
         part = parts.pop()
         if isinstance(part, Node):
-            called = (sampled_of(x.args[1]) for x in order((part,)) if x.op == "sampled")
+            called = (Sampled.of(x.args[1]) for x in order((part,)) if x.op == "sampled")
             found |= {sampled.name: TableFunction(sampled) for sampled in called if sampled.called}
         elif isinstance(part, (Name, Partial, Rate)):
             parts.append(part.of if isinstance(part, (Partial, Rate)) else part.by)

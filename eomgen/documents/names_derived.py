@@ -29,7 +29,7 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Row
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import Balance, NamedReaction, named_reactions
+from eomgen.mechanics.free_bodies import Balance, NamedReaction
 from eomgen.mechanics.integrals import FirstIntegrals
 from eomgen.mechanics.kinematics import Applied, SystemInertia
 from eomgen.model import Couple, PointForce
@@ -367,7 +367,7 @@ def requested_reactions(system: System) -> Iterator[RequestedReaction]:
         DerivationError: something acts at no place.
     """
     balance = Balance.of(system)
-    for each in named_reactions(balance):
+    for each in NamedReaction.all_of(balance):
         function, _, arguments = each.name.removesuffix(")").partition("(")
         argument, _, number = arguments.partition(", ")
         if number and not (function == "tension" and number.isdigit()):

@@ -36,7 +36,6 @@ from eomgen.mechanics.free_bodies import (
     Reactions,
     SystemFriction,
     determinate_sums,
-    named_reactions,
     reactions_by_sides,
 )
 from eomgen.model import PointForce, ReactionSymbols
@@ -539,7 +538,7 @@ def reactions_payload(equations: EquationsOfMotion, taken: frozenset[str]) -> di
     """
     try:
         readings = readings_of(equations, Reader(positive=equations.system.scope.positive))
-        names = named_reactions(readings.ways[0].balance)
+        names = NamedReaction.all_of(readings.ways[0].balance)
     except DerivationError as error:
         message = f"{error.what}; {error.fix}" if error.fix else error.what
         return {"reactions": {}, "reaction_null_space": [], "reactions_message": message}
@@ -629,7 +628,7 @@ class PrintedReactions:
 
     @cached_property
     def _names(self) -> tuple[NamedReaction, ...]:
-        return tuple(named_reactions(self._readings.ways[0].balance))
+        return tuple(NamedReaction.all_of(self._readings.ways[0].balance))
 
     @property
     def formulas(self) -> dict[str, ReactionFormula]:

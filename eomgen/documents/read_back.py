@@ -62,7 +62,7 @@ from eomgen.documents.statements import (
 from eomgen.errors import ExpressionError
 from eomgen.frozen import dataclass
 from eomgen.proof import Check, checked, differing, unchecked
-from eomgen.symbolic.expression import AS_WRITTEN, LONGEST, Graph, Node, Scalar, TableFunction, order, parse, sampled_of
+from eomgen.symbolic.expression import AS_WRITTEN, LONGEST, Graph, Node, Sampled, Scalar, TableFunction, order, parse
 from eomgen.symbolic.numeric import READ_BACK, NoValue, evaluate, fifty_digits, tolerances
 from eomgen.symbolic.print import Notation
 
@@ -521,8 +521,8 @@ def _leaf_nodes(scalars: Iterable[Scalar]) -> Iterator[tuple[str, Node]]:
     for x in order(tuple(scalars)):
         if x.op == "symbol":
             yield x.name, x
-        elif x.op == "sampled" and not sampled_of(x.args[1]).called:
-            yield sampled_of(x.args[1]).name, x
+        elif x.op == "sampled" and not Sampled.of(x.args[1]).called:
+            yield Sampled.of(x.args[1]).name, x
 
 
 def _leaves(x: Scalar) -> list[str]:

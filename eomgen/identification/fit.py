@@ -23,7 +23,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import least_squares
 
-from eomgen.codegen import compiled, parameter_vector, program_of
+from eomgen.codegen import Program, RightHandSide, parameter_vector
 from eomgen.documents import Document, Lines, plain_document, prose, proven
 from eomgen.errors import UsageError
 from eomgen.files import read
@@ -227,7 +227,7 @@ def stacking_of(found: Regressor) -> Stacking:
     applied = tuple(x - y for x, y in zip(Q, substituted(Q, still), strict=True))
     J = tuple(x for row in system.constraints.J for x in row)
     outputs = (*(x for row in found.rows for x in row), *found.known, *applied, *J)
-    function = compiled(program_of(outputs, symbols, inputs=system.inputs, accelerations=symbols.a), "numpy")
+    function = RightHandSide.of(Program.of(outputs, symbols, inputs=system.inputs, accelerations=symbols.a), "numpy")
     size, width, p = len(symbols.u), len(found.parameters), parameter_vector(found.model)
 
     def stacked(data: Data) -> Stacked:

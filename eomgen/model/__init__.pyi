@@ -60,9 +60,6 @@ from eomgen.model.constraints.strand import Stop as Stop
 # The straight string between two stops
 from eomgen.model.constraints.strand import Strand as Strand
 
-# The strand that touches both
-from eomgen.model.constraints.strand import common_tangent as common_tangent
-
 # A constraint, the joint of a body on a path, or a joint with dry friction
 from eomgen.model.contacts import Contact as Contact
 
@@ -298,9 +295,6 @@ from eomgen.model.replaced import equation_in as equation_in
 
 # An equation that a person typed, in SI, and what was taken of it
 from eomgen.model.replaced import equation_typed as equation_typed
-
-# The values that a text means
-from eomgen.model.replaced import range_of as range_of
 
 # Refuses a name of what takes no values
 from eomgen.model.replaced import refuse_what_is_not_set as refuse_what_is_not_set

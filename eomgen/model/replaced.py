@@ -323,6 +323,30 @@ class Range:
     size: float
     taken: Taken
 
+    @classmethod
+    def of(cls, model: Model, text: str, *, starts: bool = False, declared: bool = True) -> Range:
+        """The values that a text means.
+
+        Args:
+            starts: starts of coordinates, rates and speeds may take values too.
+            declared: plain numbers are in the unit that the file declares; else in SI.
+        Raises:
+            UsageError: no parameter of that name, or no values.
+        """
+        logarithmic = text.startswith("log:")
+        name, equals, rest = text.removeprefix("log:").partition("=")
+        name = name.strip()
+        if not equals:
+            raise UsageError(f"'{text}' is no range", fix=LIKE)
+        refuse_what_is_not_set(model, name, starts=starts)
+        typed = TypedNumbers(model, name, declared)
+        try:
+            values = _values(rest, logarithmic, text, typed.number)
+        except ExpressionError as error:
+            raise UsageError(f"'{text}' is no range: {error.what}", fix=error.fix or LIKE) from error
+        unit, size = ("", 1.0) if typed.unit is None else (typed.unit.text, typed.unit.size)
+        return cls(name, tuple(values), unit, size, _taken(typed, rest, logarithmic))
+
 
 @dataclass(frozen=True)
 class TypedNumbers:
@@ -414,30 +438,6 @@ def refuse_what_is_not_set(model: Model, name: str, *, starts: bool) -> None:
         raise UsageError(what, fix=nearest(name, known) or LIKE)
     if name in model.counts:
         raise UsageError(f"'{name}' counts things of the model: it has one value", fix=f"set it: {name}=5")
-
-
-def range_of(model: Model, text: str, *, starts: bool = False, declared: bool = True) -> Range:
-    """The values that a text means.
-
-    Args:
-        starts: starts of coordinates, rates and speeds may take values too.
-        declared: plain numbers are in the unit that the file declares; else in SI.
-    Raises:
-        UsageError: no parameter of that name, or no values.
-    """
-    logarithmic = text.startswith("log:")
-    name, equals, rest = text.removeprefix("log:").partition("=")
-    name = name.strip()
-    if not equals:
-        raise UsageError(f"'{text}' is no range", fix=LIKE)
-    refuse_what_is_not_set(model, name, starts=starts)
-    typed = TypedNumbers(model, name, declared)
-    try:
-        values = _values(rest, logarithmic, text, typed.number)
-    except ExpressionError as error:
-        raise UsageError(f"'{text}' is no range: {error.what}", fix=error.fix or LIKE) from error
-    unit, size = ("", 1.0) if typed.unit is None else (typed.unit.text, typed.unit.size)
-    return Range(name, tuple(values), unit, size, _taken(typed, rest, logarithmic))
 
 
 def _taken(typed: TypedNumbers, rest: str, logarithmic: bool) -> Taken:

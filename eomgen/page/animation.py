@@ -14,9 +14,9 @@ from eomgen.documents import Document, plain_document, prose, with_start_reporte
 from eomgen.equations import Equations
 from eomgen.errors import UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics import system_of
+from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies import Structure
-from eomgen.mechanics.statics import ContactsAtStart, released_in
+from eomgen.mechanics.statics import ContactsAtStart, StaticReaction
 from eomgen.model import Model, ModelOrPath, Typed, Values
 from eomgen.page.moving_picture import (
     FINE,
@@ -246,12 +246,12 @@ def released(model: Model, reaction: str) -> tuple[VirtualDisplacement, bool]:
         UsageError: there is no such reaction.
         DerivationError: released, nothing can move; bodies can move that no coordinate describes.
     """
-    system = system_of(model, ContactsAtStart.at_rest(model))
+    system = System.of(model, ContactsAtStart.at_rest(model))
     stands = not system.has_degrees_of_freedom
     structure = Structure.of(system.with_drives_held()[0] if stands else system)
     if stands:
         structure.refuse_loose()
-    return VirtualDisplacement(structure, released_in(structure, reaction)), stands
+    return VirtualDisplacement(structure, StaticReaction.released(structure, reaction)), stands
 
 
 def _reported(

@@ -14,12 +14,12 @@ from collections.abc import Sequence
 from functools import cached_property
 from typing import Any
 
-from eomgen.codegen import Program, kinematic_rates, program_in_motion, program_of, right_hand_side
+from eomgen.codegen import Program, kinematic_rates
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System, mass
 from eomgen.mechanics.kinematics import Scope
-from eomgen.mechanics.start import start_speeds
+from eomgen.mechanics.start import Start
 from eomgen.model import Coordinate, Model, in_order
 from eomgen.resources import growing
 from eomgen.scene import Scene
@@ -47,7 +47,7 @@ class ConstraintRows:
     @cached_property
     def program(self) -> Program:
         slopes = [x for rows in (self._positions, self.speeds) for row in rows for x in row if not is_zero(x)]
-        return program_of((*self.gaps, *self.rates, *slopes), self.system.symbols, inputs=self.system.inputs)
+        return Program.of((*self.gaps, *self.rates, *slopes), self.system.symbols, inputs=self.system.inputs)
 
     @cached_property
     def _positions(self) -> tuple[tuple[Scalar, ...], ...]:
@@ -112,8 +112,8 @@ class Live:
             equations = self.study.explicit_while_sliding
             found = {
                 "begin": self._begin(),
-                "rate": right_hand_side(equations),
-                "frame": program_in_motion(self._frame(), equations),
+                "rate": Program.right_hand_side(equations),
+                "frame": Program.in_motion(self._frame(), equations),
             }
             if self.start.gaps or self.start.rates:
                 found["start"] = self.start.program
@@ -121,9 +121,9 @@ class Live:
                 found["inertia"] = _inertia(declared)
             if system is not declared:
                 found["ties"] = self.constraints.program
-                found["turned"] = program_of(declared.scope.rates, system.symbols, inputs=system.inputs)
+                found["turned"] = Program.of(declared.scope.rates, system.symbols, inputs=system.inputs)
             if self.phase.edges:
-                found["edges"] = program_of(
+                found["edges"] = Program.of(
                     tuple(edge.left for edge in self.phase.edges), system.symbols, inputs=system.inputs
                 )
         return found
@@ -152,10 +152,10 @@ class Live:
         parts = self.model.coordinates
         q = [_begun(scope, part) for part in parts.values()]
         guesses = [scope.value(part.near) for part in parts.values()]
-        speeds = start_speeds(system)
+        speeds = Start.speeds_of(system)
         states = (scope.value(part.start) for part in self.model.states.values())
         begun = (*(symbols.parameters[name] for name in derived), *q, *guesses, *speeds.values(), *states)
-        return program_of(substituted(begun, known), symbols, inputs=system.inputs)
+        return Program.of(substituted(begun, known), symbols, inputs=system.inputs)
 
     @property
     def reactions(self) -> dict[str, Scalar]:
@@ -228,4 +228,4 @@ def _begun(scope: Scope, part: Coordinate) -> Scalar:
 
 def _inertia(system: System) -> Program:
     M = mass(system.motion)
-    return program_of(tuple(x for row in M for x in row), system.symbols, inputs=system.inputs)
+    return Program.of(tuple(x for row in M for x in row), system.symbols, inputs=system.inputs)

@@ -15,7 +15,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from eomgen.codegen import TestVector, compiled, javascript_expression, vectors
+from eomgen.codegen import RightHandSide, TestVector, javascript_expression, vectors
 from eomgen.documents import Catalogue, language_of, notation_of
 from eomgen.errors import ToolMissing, UsageError, visible
 from eomgen.frozen import dataclass
@@ -526,7 +526,7 @@ def _named_otherwise(played: PlayedRun, columns: Mapping[str, Any]) -> str:
     k, names = len(run.t) // 2, live.phase.moving
     own = {name: run.x[:, j] for j, name in enumerate(run.moving)} | dict(run.reactions)
     x = [float(own[name][k]) for name in names]
-    frame = compiled(live.programs["frame"], "numpy")(float(run.t[k]), x, played.phase.p, ())
+    frame = RightHandSide.of(live.programs["frame"], "numpy")(float(run.t[k]), x, played.phase.p, ())
     numbers: dict[str, Sequence[float]] = {"x": x, "frame": frame.tolist()}
     if beyond := [name for name, (where, place) in columns.items() if place >= len(numbers[where])]:
         return f"there is no number of {beyond[0]}"

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from eomgen import files, pipeline
-from eomgen.codegen import TestVector, compiled
+from eomgen.codegen import RightHandSide, TestVector
 from eomgen.documents import Document, Lines, language_of, plain_document, proven, with_start_reported
 from eomgen.errors import ExpressionError, RunFailed, ToolMissing, UsageError
 from eomgen.frozen import dataclass
@@ -78,7 +78,7 @@ class Played:
             assert live is not None
             title = f"the page's program of the {SUBJECTS[name]} gives the symbols' numbers"
             try:
-                function = compiled(live.programs[name], "javascript")
+                function = RightHandSide.of(live.programs[name], "javascript")
                 wrong = next((w for v in rows if (w := _wrong(v, function(v.t, v.x, v.p, v.inputs or ())))), "")
             except (ToolMissing, RunFailed) as error:
                 yield unchecked(title, error.what, how)

@@ -15,11 +15,11 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from eomgen.codegen import compiled, program_of
+from eomgen.codegen import Program, RightHandSide
 from eomgen.errors import DerivationError, ModelError, RunFailed
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics import System, system_of
-from eomgen.mechanics.instant import KinematicState, Quantities, requests_of
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.instant import KinematicState, Quantities
 from eomgen.mechanics.linearization import Modes
 from eomgen.mechanics.start import Start
 from eomgen.model import FUNCTIONS, AtRest, Model, Output, OutputSource, WrittenEquation
@@ -31,7 +31,7 @@ from eomgen.proof.instant import instant_checks, second_definition, values_of
 from eomgen.proof.masses import other_data
 from eomgen.proof.runs import run_checks
 from eomgen.proof.small_motions import small_motion_checks
-from eomgen.simulation import PhaseRun, Trajectory, joined
+from eomgen.simulation import PhaseRun, Trajectory
 from eomgen.study import MotionFromStart, StateAtInstant, Study, kinematic_state
 from eomgen.symbolic.expression import Call, Fraction, Node, Scalar, depends_on, holds_op, symbols_of
 from eomgen.symbolic.numeric import PIECEWISE, NoValue, evaluate, fifty_digits, number_of, numbers_of, tolerances
@@ -123,7 +123,7 @@ class _Proof:
             return
         tally = Tally("answers begin where the motion of the model does", "the start over its own speeds")
         here = Start.of(own).values
-        for name, x in Start.of(system_of(self.solver.model, own.modes)).values.items():
+        for name, x in Start.of(System.of(self.solver.model, own.modes)).values.items():
             tally.add(name, partial(differing, here[name], x))
         yield from tally.checks()
 
@@ -284,7 +284,7 @@ class _Proof:
         linear = {
             name: pair
             for name, pair in self.requested.items()
-            if requests_of(pair[0].value, OutputSource.SMALL_MOTIONS)
+            if Quantities.requested_by(pair[0].value, OutputSource.SMALL_MOTIONS)
         }
         left = {name: pair for name, pair in self.requested.items() if name not in linear and pair[0].at is None}
         return linear, {name: pair for name, pair in left.items() if self.solver.is_of_the_instant(pair[0])}
@@ -347,7 +347,7 @@ class _Proof:
         phase, condition = motion.phase, output.at
         assert condition is not None and not isinstance(condition, AtRest)
         difference, system = phase.difference(condition), phase.system
-        function = compiled(program_of((difference,), system.symbols, inputs=system.inputs), "numpy")
+        function = RightHandSide.of(Program.of((difference,), system.symbols, inputs=system.inputs), "numpy")
         with np.errstate(all="ignore"):
             values = function.many(run.t, run.x, motion.p)[:, 0]
         size = float(np.max(np.abs(values), initial=0.0))
@@ -484,7 +484,7 @@ def wrong_way(motion: MotionFromStart, output: Output, moment: StateAtInstant) -
     if t == 0:
         return ""
     runs = motion.runs_to(output.at)
-    found = Certificate(run_checks(joined(motion.models, runs), motion.models, motion.stepping))
+    found = Certificate(run_checks(PhaseRun.joined(motion.models, runs), motion.models, motion.stepping))
     if found.ok is None:
         raise DerivationError(
             "the motion has phases of which nothing could be checked",

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen import RightHandSide, compiled, right_hand_side
+from eomgen.codegen import Program, RightHandSide
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, exact_accelerations, with_accelerations
@@ -182,7 +182,7 @@ class NumericState:
 
     @cached_property
     def _rhs(self) -> RightHandSide:
-        return compiled(right_hand_side(with_accelerations(self.equations)), "numpy")
+        return RightHandSide.of(Program.right_hand_side(with_accelerations(self.equations)), "numpy")
 
     @cached_property
     def jumps(self) -> bool:

@@ -23,11 +23,11 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen import RightHandSide, compiled, program_of
+from eomgen.codegen import Program, RightHandSide
 from eomgen.errors import DerivationError, ModelError, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import Row, rows_of_constraint
-from eomgen.mechanics.dynamics import EquationsOfMotion, System, system_of
+from eomgen.mechanics.constraints import Row
+from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.mechanics.free_bodies import Reactions, SystemFriction
 from eomgen.mechanics.kinematics import ContactMode, SystemInertia
 from eomgen.mechanics.start import Start
@@ -111,7 +111,7 @@ class _Seen:
         return functions.kinematic((scalar,)).many(t, functions.inner(x), self.model.p)[:, 0]
 
     def _gap(self, contact: Contact) -> np.ndarray:
-        gap = rows_of_constraint(self.model.system.motion, contact.name)[0].gap
+        gap = Row.of_constraint(self.model.system.motion, contact.name)[0].gap
         if gap is not None:
             return self._along(gap)
         return self.model.functions.slacks(self.track[1])[:, self.model.loose.index(contact.name)]
@@ -392,7 +392,7 @@ class _Bodies:
 
     @cached_property
     def _rows(self) -> dict[str, tuple[Row, ...]]:
-        return {name: rows_of_constraint(self.system.motion, name) for name in self.contacts}
+        return {name: Row.of_constraint(self.system.motion, name) for name in self.contacts}
 
     def _stays_open(self, name: str) -> bool:
         return all(name in phase.model.configuration.open for phase in (self.before, self.after))
@@ -447,7 +447,9 @@ class _Bodies:
         return np.array([[*state[:q], *u, *state[q + len(u) :]] for u in speeds])
 
     def _numbers(self, scalars: tuple[Scalar, ...], x: np.ndarray) -> np.ndarray:
-        function: RightHandSide = compiled(program_of(scalars, self.system.symbols, inputs=self.system.inputs), "numpy")
+        function: RightHandSide = RightHandSide.of(
+            Program.of(scalars, self.system.symbols, inputs=self.system.inputs), "numpy"
+        )
         return function.many(self.after.start, x, self.after.model.p)
 
 
@@ -542,7 +544,7 @@ def leaving_at_start(equations: EquationsOfMotion) -> str:
     if not ending or not model.coordinates or len(model.exact_parameters()) < len(model.parameters):
         return ""
     try:
-        free = system_of(model, {**modes, **dict.fromkeys(ending, OPEN)})
+        free = System.of(model, {**modes, **dict.fromkeys(ending, OPEN)})
         start = Start.of(free)
     except (DerivationError, ModelError, UsageError) as error:
         raise NoValue(str(error).splitlines()[0]) from None
@@ -552,7 +554,7 @@ def leaving_at_start(equations: EquationsOfMotion) -> str:
     known = own_start(free)
     if known is None:
         return ""
-    rows = {name: rows_of_constraint(free.motion, name)[0] for name in ending}
+    rows = {name: Row.of_constraint(free.motion, name)[0] for name in ending}
     gaps = [row.gap for row in rows.values() if row.gap is not None]
     if any(abs(x) > tolerances.CARRIED for x in evaluate(gaps, known, fifty_digits())):
         return ""  # it does not begin in contact: another check says where it does

@@ -33,8 +33,6 @@ from eomgen.mechanics.free_bodies import (
     NamedReaction,
     Reactions,
     SystemFriction,
-    efforts_of,
-    named_reactions,
 )
 from eomgen.mechanics.kinematics import BodyLink, SystemInertia
 from eomgen.proof.in_numbers import STEP, InNumbers, Way, way_through
@@ -512,7 +510,7 @@ def named_otherwise(balance: Balance, state: State) -> str:
         NoValue: something has no value there.
     """
     proof = _Named(balance.system, state, balance)
-    for named in named_reactions(balance):
+    for named in NamedReaction.all_of(balance):
         function, _, rest = named.name.partition("(")
         if function in ALONG and named.combination:
             couple, k = ALONG[function]
@@ -539,7 +537,7 @@ def driven_otherwise(reactions: Reactions, state: State) -> str:
         NoValue: none is determinate with another way.
     """
     sides, found = drives_beside(reactions), 0
-    for named in (named for named in named_reactions(reactions.balance) if named.name in sides):
+    for named in (named for named in NamedReaction.all_of(reactions.balance) if named.name in sides):
         try:
             due, size = drive_demanded(reactions.balance.system, sides[named.name], state)
             value = reactions.combined(named.combination, named.name) + named.given
@@ -584,7 +582,7 @@ class _Named(InNumbers):
         for j, component in mine:
             effects = (*component.effects, *component.friction_effects)
             total = tuple(x + y for x, y in zip(total, self._turned(on, effects, couple, self.values[j]), strict=True))
-        efforts = efforts_of(self.system, owner) if owner in links and not side else []
+        efforts = Effect.of_joint(self.system, owner) if owner in links and not side else []
         return tuple(x + y for x, y in zip(total, self._turned(on, efforts, couple, 1), strict=True))
 
     def _turned(self, on: int, effects: Iterable[Effect], couple: str, share: Any) -> Any:

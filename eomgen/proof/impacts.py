@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import Row, rows_of_constraint
+from eomgen.mechanics.constraints import Row
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.impacts import Hit, ImpactEquations, jump
+from eomgen.mechanics.impacts import Hit, ImpactEquations, Jump
 from eomgen.mechanics.kinematics import SystemInertia
 from eomgen.model import PointForce
 from eomgen.proof.check import Check, Tally
@@ -196,7 +196,7 @@ def _jumps_otherwise(found: ImpactEquations, state: State) -> str:
         if any(hit.speed(u) >= 0 for hit in hits) or any(there[row.impulse] < 0 for _, row in closes):
             continue
         due = np.array([float(there[x]) for x in found.after])
-        jumped = jump(M, held, hits, u).u
+        jumped = Jump.of(M, held, hits, u).u
         wrong = np.max(np.abs(jumped - due)) > tolerances.CARRIED * (1 + np.max(np.abs(due)))
         return f"the law in numbers gives {jumped}, the formulas {due}" if wrong else ""
     raise NoValue("nothing is approached, or an impulse would pull")
@@ -230,7 +230,7 @@ class Struck:
         others = [name for name in ending if name != self.contact and (name not in modes or modes[name].closed)]
         if self.contact not in ending or others:
             raise NoValue("other contacts touch, or it is none")
-        found = [rows_of_constraint(self.system.motion, self.contact)[0], *self.system.constraints.closing]
+        found = [Row.of_constraint(self.system.motion, self.contact)[0], *self.system.constraints.closing]
         if any(row.gap is None for row in found):
             raise NoValue("a row has no gap")
         return found

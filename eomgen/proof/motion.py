@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen import RightHandSide, bordered, compiled, program_of
+from eomgen.codegen import Program, RightHandSide, Solve
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.mechanics.free_bodies import SystemFriction
@@ -302,7 +302,9 @@ def _norms(legs: Sequence[Leg], promise: Promise) -> Check | None:
 def _function(leg: Leg, scalars: tuple[Scalar, ...]) -> np.ndarray:
     key = ("proof", scalars)
     if key not in leg.known:
-        leg.known[key] = compiled(program_of(scalars, leg.equations.symbols, inputs=leg.equations.inputs), "numpy")
+        leg.known[key] = RightHandSide.of(
+            Program.of(scalars, leg.equations.symbols, inputs=leg.equations.inputs), "numpy"
+        )
     function: RightHandSide = leg.known[key]
     with np.errstate(all="ignore"):
         return function.many(leg.t, leg.x, leg.p)
@@ -374,8 +376,8 @@ class Energies:
 
     def _program(self, scalars: tuple[Scalar, ...]) -> RightHandSide:
         symbols = self.equations.symbols
-        solve = bordered(self.equations) if depends_on(scalars[-1], symbols.lam) else None
-        return compiled(program_of(scalars, symbols, inputs=self.equations.inputs, solve=solve), "numpy")
+        solve = Solve.bordered(self.equations) if depends_on(scalars[-1], symbols.lam) else None
+        return RightHandSide.of(Program.of(scalars, symbols, inputs=self.equations.inputs, solve=solve), "numpy")
 
 
 def followed(

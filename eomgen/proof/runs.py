@@ -11,7 +11,7 @@ import numpy as np
 
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion
-from eomgen.mechanics.instant import requests_of
+from eomgen.mechanics.instant import Quantities
 from eomgen.model import Output, OutputSource, WrittenEquation, formula_at
 from eomgen.proof.certificate import certify
 from eomgen.proof.check import Certificate, Check, Tally, differing, unchecked
@@ -19,7 +19,7 @@ from eomgen.proof.contact_phases import bodies_stand_as_reported, changes_follow
 from eomgen.proof.motion import Leg, Promise, code_and_steps, energy_and_constraints
 from eomgen.proof.reported_run import output_columns_hold, reaction_columns_hold, rows_left_out
 from eomgen.resources import doing
-from eomgen.simulation import Phase, PhaseModels, Stepping, Trajectory, WholeRun, formulas_of, is_of_a_run
+from eomgen.simulation import Phase, PhaseModels, Stepping, Trajectory, WholeRun, formulas_of
 from eomgen.symbolic.expression import Call, Expression
 from eomgen.symbolic.numeric import NoValue, tolerances
 
@@ -153,7 +153,7 @@ class SamplesOfRun:
         for name, output in self.run.model.outputs.items():
             if isinstance(output.at, WrittenEquation) and output.event is not None:
                 tally.add(name, partial(self._events_against_samples, output))
-            for call in self.run.functions_in(output) if is_of_a_run(output) else ():
+            for call in self.run.functions_in(output) if WholeRun.answers(output) else ():
                 tally.add(str(call), partial(self._against_samples, call))
         yield from tally.checks()
 
@@ -167,7 +167,11 @@ class SamplesOfRun:
         Args:
             reported: the value in SI; None: no value is reported.
         """
-        if output.of_every_event or output.from_ is not None or requests_of(output.value, OutputSource.SMALL_MOTIONS):
+        if (
+            output.of_every_event
+            or output.from_ is not None
+            or Quantities.requested_by(output.value, OutputSource.SMALL_MOTIONS)
+        ):
             return ""
         if not isinstance(output.at, WrittenEquation):
             return self._by_samples(output, reported) if output.at is None else ""
@@ -188,7 +192,7 @@ class SamplesOfRun:
 
     def _by_samples(self, output: Output, reported: float | None) -> str:
         """Difference from the samples, of each function of the run, or of a formula at the start; ""."""
-        if requests_of(output.value, OutputSource.OF_A_RUN):
+        if Quantities.requested_by(output.value, OutputSource.OF_A_RUN):
             calls = self.run.functions_in(output)
             wrong = (self._against_samples(call) for call in calls)
             return next(filter(None, wrong), "") or self._otherwise_reported(output, calls, reported)

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.free_bodies import imbalance, named_reactions
+from eomgen.mechanics.free_bodies import NamedReaction, imbalance
 from eomgen.mechanics.statics import InfluenceLine, SectionForces, SectionPiece, StaticReactions
 from eomgen.proof.at_a_state import balanced_least
 from eomgen.proof.check import Certificate, Check, Tally, attempted, checked, first_wrong
@@ -419,7 +419,7 @@ class _Proof:
         return G
 
     def _named(self, name: str, x: np.ndarray) -> float:
-        table = {n.name: n for n in named_reactions(self.found.structure.balance)}
+        table = {n.name: n for n in NamedReaction.all_of(self.found.structure.balance)}
         known = {str(parse(n, references=True).call): n for n in table} | {n: n for n in table}
         combination = table[known[name]].combination
         return float(sum(self.one(k) * x[j] for j, k in combination.items()))

@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen import compiled, right_hand_side
+from eomgen.codegen import Program, RightHandSide
 from eomgen.errors import ExpressionError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, with_accelerations
@@ -230,7 +230,7 @@ class _Again:
         begun = Start.of(system, changed, {u.name: 0.0 for u in symbols.u} if self.judged.at_rest else {}).values
         moving = symbols.x
         x0 = np.array([begun[node.name] for node in moving])
-        rhs = compiled(right_hand_side(with_accelerations(equations)), "numpy")
+        rhs = RightHandSide.of(Program.right_hand_side(with_accelerations(equations)), "numpy")
         p = np.array([float(x) for x in parameters.values()])
 
         def rate(t: float, x: np.ndarray) -> np.ndarray:

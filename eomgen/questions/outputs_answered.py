@@ -23,7 +23,7 @@ from eomgen.errors import (
     RunFailed,
 )
 from eomgen.frozen import dataclass
-from eomgen.mechanics.instant import InstantKinematics, requests_of
+from eomgen.mechanics.instant import InstantKinematics, Quantities
 from eomgen.mechanics.integrals import FirstIntegrals
 from eomgen.model import (
     FUNCTIONS,
@@ -38,7 +38,7 @@ from eomgen.model import (
 from eomgen.proof import AnswerSolver, Certificate, certify_answers
 from eomgen.resources import PatienceEnded, doing, keep_what_there_is
 from eomgen.results import Linearization, linearize, why_not_at_rest
-from eomgen.simulation import is_of_a_run
+from eomgen.simulation import WholeRun
 from eomgen.study import MotionFromStart, StateAtInstant, Study, model_to_study, study_at_rest
 from eomgen.symbolic.expression import Call, Expression, Graph, Node, Scalar, depends_on, order, substituted, symbols_of
 from eomgen.symbolic.numeric import number_of, transplanted
@@ -84,7 +84,9 @@ class Answers(dict[str, Answer], Result):
     def failed(self) -> str:
         """Message that names the outputs without an answer, those of a whole run left out; "" where there are none."""
         outputs = self._solver.model.outputs
-        unanswered = [name for name, answer in self.items() if not answer.answered and not is_of_a_run(outputs[name])]
+        unanswered = [
+            name for name, answer in self.items() if not answer.answered and not WholeRun.answers(outputs[name])
+        ]
         return f"not answered: {', '.join(unanswered)}" if unanswered else ""
 
     def entries(self) -> dict[str, Any]:
@@ -168,9 +170,9 @@ class _Solver:
         return self.units[output].text if output in self.units else ""
 
     def _answer(self, output: Output) -> Answer:
-        if is_of_a_run(output):
+        if WholeRun.answers(output):
             raise DerivationError("it is a function of a whole run", fix="`eomgen simulate` gives it")
-        if requests_of(output.value, OutputSource.SMALL_MOTIONS):
+        if Quantities.requested_by(output.value, OutputSource.SMALL_MOTIONS):
             return self._of_small_motions(output)
         if output.at is not None:
             return self._at(output)

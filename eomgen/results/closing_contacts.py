@@ -21,7 +21,7 @@ from eomgen.documents import (
 )
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.impacts import ImpactEquations, impact_equations
+from eomgen.mechanics.impacts import ImpactEquations
 from eomgen.mechanics.statics import ContactsAtStart
 from eomgen.model import Model
 from eomgen.proof import Certificate, impact_checks
@@ -138,12 +138,12 @@ def impact(model: Model, contacts: Sequence[str] = (), *, full: bool = False) ->
         contacts: by name; (): the one that can end.
         full: everything is printed, however long.
     Raises:
-        UsageError, DerivationError: as of `impact_equations`.
+        UsageError, DerivationError: as of `ImpactEquations.of`.
     """
     modes = ContactsAtStart.of(model).modes
     ending = [contact.name for contact in model.contacts if contact.unilateral]
     closed = [name for name in ending if name not in modes or modes[name].closed] if len(ending) > 1 else []
-    found = impact_equations(model, contacts, closed)
+    found = ImpactEquations.of(model, contacts, closed)
     if not found.u:
         raise DerivationError("nothing of the model can move", fix="give it a coordinate")
     return ImpactResult(model, found, full)

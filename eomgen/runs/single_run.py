@@ -40,7 +40,6 @@ from eomgen.simulation import (
     WholeRun,
     formulas_of,
     instants_of,
-    joined,
     refuse_bad_run,
 )
 from eomgen.symbolic.expression import Expression, Scalar, is_zero, parse, symbols_of
@@ -248,7 +247,7 @@ def finished_run(
     """
     model, runs = equations.model, whole.runs
     columns = formulas_of(model) if outputs is None else outputs
-    found = joined(models, runs, until=until, reactions=reactions, outputs=columns)
+    found = PhaseRun.joined(models, runs, until=until, reactions=reactions, outputs=columns)
     begun = runs[0].here.begun
     proof = RunProof(equations.graph, how, models, whole)
     more = {

@@ -29,7 +29,6 @@ from eomgen.model import (
     Strand,
     TouchingPoint,
     TouchingRound,
-    common_tangent,
     unit,
 )
 from eomgen.scene.bodies import gimbal_of, is_block, is_cylinder, parameters_as_drawn, seen, shaft_of, wedge_of
@@ -288,7 +287,7 @@ def _belt_of(system: System, scene: SystemScene, wheels: tuple[str, str, Express
     if not is_zero(scene.value(ratio) * rims[0] - rims[1]):
         return []
     first, second = (Stop(scene, place, r) for place, r in zip(centers, rims, strict=True))
-    there, back = common_tangent(scene, first, second), common_tangent(scene, second, first)
+    there, back = Strand.between(scene, first, second), Strand.between(scene, second, first)
     forms = (
         LineForm(there.ends),
         LineForm(back.ends),

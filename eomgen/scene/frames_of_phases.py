@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen import compiled, program_of
+from eomgen.codegen import Program, RightHandSide
 from eomgen.mechanics.dynamics import System
 from eomgen.model import Form
 from eomgen.proof import ReportedArrow, ReportedPicture, ReportedPush
@@ -104,9 +104,9 @@ def _states(system: System, columns: Mapping[str, np.ndarray], times: np.ndarray
 
 def _value(system: System, scalars: Sequence[Scalar], t: np.ndarray, x: np.ndarray, p: np.ndarray) -> np.ndarray:
     """Values of scalars along a motion, scalars x instants."""
-    program = program_of(scalars, system.symbols, inputs=system.inputs)
+    program = Program.of(scalars, system.symbols, inputs=system.inputs)
     with np.errstate(all="ignore"):
-        return compiled(program, "numpy").many(t, x, p).T
+        return RightHandSide.of(program, "numpy").many(t, x, p).T
 
 
 def _columns(run: Trajectory, phase: Phase, times: np.ndarray) -> dict[str, np.ndarray]:

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen import Program, compiled, program_in_motion, program_of
+from eomgen.codegen import Program, RightHandSide
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.model import Form
@@ -121,8 +121,8 @@ class Scene:
     def program(self) -> Program:
         """The values of a frame as a program of (t, x, p, inputs)."""
         if self.equations is not None:
-            return program_in_motion(self.values, self.equations)
-        return program_of(self.values, self.system.symbols, inputs=self.system.inputs)
+            return Program.in_motion(self.values, self.equations)
+        return Program.of(self.values, self.system.symbols, inputs=self.system.inputs)
 
     def to_json(self) -> dict[str, Any]:
         """The scene as data; the numbers of a frame are those of `values`.
@@ -254,4 +254,4 @@ def frames_along(scene: Scene, t: np.ndarray, x: np.ndarray, p: np.ndarray, targ
     if not scene.values:
         return np.zeros((len(t), 0))
     with np.errstate(all="ignore"):
-        return compiled(scene.program, target).many(t, x, p)
+        return RightHandSide.of(scene.program, target).many(t, x, p)

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen import compiled, program_of
+from eomgen.codegen import Program, RightHandSide
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies import Axes, Effect, Structure, numeral
@@ -110,13 +110,13 @@ class VirtualDisplacement:
         system, scene = self._displaced, self.scene
         own = {**system.inputs, SHARE: 0}
         symbols = replace(system.symbols, inputs={**system.symbols.inputs, SHARE: self._share})
-        program = program_of(scene.values, symbols, inputs=own)
+        program = Program.of(scene.values, symbols, inputs=own)
         x, inputs = self._numbers(system.symbols.x), self._numbers(tuple(own.values()))
         table = np.tile(inputs, (len(shares), 1))
         table[:, -1] = shares
         p = list(parameters_as_drawn(system).values())
         with np.errstate(all="ignore"):
-            found: np.ndarray = compiled(program, "numpy").many(0.0, np.tile(x, (len(shares), 1)), p, table)
+            found: np.ndarray = RightHandSide.of(program, "numpy").many(0.0, np.tile(x, (len(shares), 1)), p, table)
         return found
 
     # -- forces ----------------------------------------------------------------------------------------

@@ -19,7 +19,7 @@ import numpy as np
 from eomgen.documents import Document, Found, Listing, Quantity, Result, plain_document
 from eomgen.errors import DerivationError, EomgenError, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.instant import requests_of
+from eomgen.mechanics.instant import Quantities
 from eomgen.mechanics.linearization import ParameterSlopes
 from eomgen.mechanics.start import Seeds, Start, start_seeds
 from eomgen.mechanics.state import Numbers, Split
@@ -386,7 +386,11 @@ class _Asking:
         Raises:
             DerivationError: it is of a whole run, or of an instant.
         """
-        if requests_of(output.value, OutputSource.OF_A_RUN) or output.from_ is not None or output.event is not None:
+        if (
+            Quantities.requested_by(output.value, OutputSource.OF_A_RUN)
+            or output.from_ is not None
+            or output.event is not None
+        ):
             raise DerivationError(
                 "it is of a whole run, or of one instant of it: no derivative is sought of that",
                 fix="request last(...), or sweep over the parameter",
@@ -394,7 +398,7 @@ class _Asking:
         rest = isinstance(output.at, AtRest)
         if output.at is not None and not rest:
             raise DerivationError("it is requested at an instant", fix="give `time`: derivatives along the run")
-        if requests_of(output.value, OutputSource.SMALL_MOTIONS):
+        if Quantities.requested_by(output.value, OutputSource.SMALL_MOTIONS):
             return self._of_small_motions(output.value, name)
         return self._at_rest(output.value, name) if rest else self._at_the_start(output.value, name)
 

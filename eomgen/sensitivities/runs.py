@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen import compiled, kinematic_rates, parameter_vector, program_of
+from eomgen.codegen import Program, RightHandSide, kinematic_rates, parameter_vector
 from eomgen.errors import DerivationError, EomgenError, NotYet, RunFailed
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
@@ -79,13 +79,13 @@ def changing_run(
     along = {name: {**seeds, **dict(zip(x, s[name], strict=True))} for name, seeds in changes.items()}
     extended = replace(symbols, z=(*symbols.z, *(node for own in s.values() for node in own)))
     rows = [*rates, *(d for seeds in along.values() for d in tangent(rates, seeds))]
-    f, p = compiled(program_of(rows, extended)), parameter_vector(system.scope.model)
+    f, p = RightHandSide.of(Program.of(rows, extended)), parameter_vector(system.scope.model)
     x0 = np.concatenate([start[0], *(start[1][name] for name in changes)])
     states = _integrated(f.at(p), x0, instants, system.scope.model.breakpoints)
     inputs = _own_inputs(system)
     closed = substituted([phase.of_state(formula) for formula in formulas.values()], inputs)
     requested = [*closed, *(d for seeds in along.values() for d in tangent(closed, seeds))]
-    columns = compiled(program_of(requested, extended), "numpy").many(instants, states, p).T + 0.0
+    columns = RightHandSide.of(Program.of(requested, extended), "numpy").many(instants, states, p).T + 0.0
     keys = [(of, name) for name in changes for of in formulas]
     slopes = dict(zip(keys, columns[len(formulas) :], strict=True))
     return ChangingRun(instants, dict(zip(formulas, columns, strict=False)), slopes)

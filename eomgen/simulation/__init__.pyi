@@ -58,9 +58,6 @@ from eomgen.simulation.phase_models import one_phase as one_phase
 # One phase as it was run
 from eomgen.simulation.phase_run import PhaseRun as PhaseRun
 
-# The motion through all phases, with the beginning and the end of each; a coordinate that one lacks is 0 in it
-from eomgen.simulation.phase_run import joined as joined
-
 # The reactions of one system along its motion
 from eomgen.simulation.reaction_columns import ReactionColumns as ReactionColumns
 
@@ -84,6 +81,3 @@ from eomgen.simulation.solvers import step as step
 
 # Outputs of a whole motion
 from eomgen.simulation.whole_run import WholeRun as WholeRun
-
-# True if an output is a function of a whole run: extremes, means, or values at the n-th event
-from eomgen.simulation.whole_run import is_of_a_run as is_of_a_run

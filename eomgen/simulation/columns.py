@@ -14,12 +14,12 @@ from functools import cached_property
 
 import numpy as np
 
-from eomgen.codegen import RightHandSide, compiled, program_of
+from eomgen.codegen import Program, RightHandSide
 from eomgen.errors import DerivationError, ExpressionError, MissingValues
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies import Indeterminate, NamedReaction, Reactions
-from eomgen.mechanics.instant import Quantities, requests_of
+from eomgen.mechanics.instant import Quantities
 from eomgen.model import FUNCTIONS, Model, OutputSource
 from eomgen.simulation.phase_functions import PhaseFunctions
 from eomgen.simulation.phase_model import PhaseModel
@@ -227,11 +227,17 @@ class _Columns:
         symbols = self.system.symbols
         beside = (*symbols.a, *self._multipliers, *self._made.reactions)
         symbols = replace(symbols, z=symbols.z + beside)
-        return compiled(program_of(tuple(self._made.scalars.values()), symbols, inputs=self.system.inputs), "numpy")
+        return RightHandSide.of(
+            Program.of(tuple(self._made.scalars.values()), symbols, inputs=self.system.inputs), "numpy"
+        )
 
 
 def formulas_of(model: Model) -> dict[str, Expression]:
     """The outputs that are functions of the state: at no given instant, and of no linearized system."""
     requested = ((name, part) for name, part in model.outputs.items() if part.at is None and part.from_ is None)
     others = (OutputSource.SMALL_MOTIONS, OutputSource.OF_A_RUN)
-    return {name: part.value for name, part in requested if not any(requests_of(part.value, other) for other in others)}
+    return {
+        name: part.value
+        for name, part in requested
+        if not any(Quantities.requested_by(part.value, other) for other in others)
+    }

@@ -23,7 +23,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen import QuaternionPlaces, RightHandSide, at_unit_norms, compiled, program_of
+from eomgen.codegen import Program, QuaternionPlaces, RightHandSide, at_unit_norms
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import PLACE, Rank
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, mass
@@ -236,8 +236,8 @@ def _rows(
 
 
 def _compiled(outputs: tuple[Scalar, ...], system: System, target: str | None) -> RightHandSide:
-    program = program_of(outputs, replace(system.symbols, z=()), inputs=system.inputs)
-    return compiled(program, target if program.count.total > SHORT else "numpy")
+    program = Program.of(outputs, replace(system.symbols, z=()), inputs=system.inputs)
+    return RightHandSide.of(program, target if program.count.total > SHORT else "numpy")
 
 
 def _identity(n: int) -> tuple[tuple[int, ...], ...]:
@@ -546,7 +546,7 @@ class RankLookout:
 
 def measure(system: System, outputs: tuple[Scalar, ...], p: np.ndarray) -> Measured:
     """(t n, x n x states) -> the outputs at each state, n x outputs."""
-    return Measured(compiled(program_of(outputs, system.symbols, inputs=system.inputs), "numpy"), p)
+    return Measured(RightHandSide.of(Program.of(outputs, system.symbols, inputs=system.inputs), "numpy"), p)
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ import numpy as np
 from eomgen.codegen import RightHandSide
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import Rank, Row, rows_of_constraint
+from eomgen.mechanics.constraints import Rank, Row
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies import Indeterminate, Reactions
 from eomgen.mechanics.kinematics import ContactMode
@@ -170,7 +170,7 @@ class ContactEvents:
         return found
 
     def _of_open(self, contact: Contact) -> list[Signal]:
-        row, scope = rows_of_constraint(self.system.motion, contact.name)[0], self.system.scope
+        row, scope = Row.of_constraint(self.system.motion, contact.name)[0], self.system.scope
         gap, rate = row.gap, row.velocity if row.gap is None else scope.time_derivative((row.gap,))[0]
         return [
             Signal(contact.name, "gap", gap),

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from eomgen.codegen import compiled, program_of
+from eomgen.codegen import Program, RightHandSide
 from eomgen.errors import DerivationError, RunFailed
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion
@@ -65,7 +65,7 @@ class RestDeparture:
 
     def _functions(self, scalars: tuple[Scalar, ...]) -> Callable[[float, np.ndarray], np.ndarray]:
         """Scalars as functions of t and x."""
-        function = compiled(program_of(scalars, self.equations.symbols), "numpy")
+        function = RightHandSide.of(Program.of(scalars, self.equations.symbols), "numpy")
         return lambda t, x: function(t, x, self.phase.p)
 
     def _function(self, scalar: Scalar) -> Callable[[float, np.ndarray], float]:

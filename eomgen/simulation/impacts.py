@@ -19,12 +19,12 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen import RightHandSide, compiled, program_of
+from eomgen.codegen import Program, RightHandSide
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import Row, rows_of_constraint
+from eomgen.mechanics.constraints import Row
 from eomgen.mechanics.dynamics import System, assembled_by_recursion
-from eomgen.mechanics.impacts import Hit, ImpactLaw, Jump, jump
+from eomgen.mechanics.impacts import Hit, ImpactLaw, Jump
 from eomgen.mechanics.kinematics import SystemInertia
 from eomgen.model import Contact
 from eomgen.simulation.phase_model import PhaseModel, Values
@@ -84,7 +84,7 @@ class WithoutContacts:
         ]
         u = x[len(self.system.symbols.q) :][:nu]
         rough = any(hit.mu and not hit.rests for hit in hits)
-        after = jump(M, rows[:k], hits, u, ImpactLaw.of(self.system.scope.model.impact, rough))
+        after = Jump.of(M, rows[:k], hits, u, ImpactLaw.of(self.system.scope.model.impact, rough))
         size = tolerances.COMPUTED * max(1.0, float(np.max(np.abs(u), initial=0.0)))
         approached = [hit.name for hit in hits if hit.speed(u) < -size]
         impact = Impact(t, ", ".join(approached), self._named(after), self._lost(t, x, after.u))
@@ -177,7 +177,7 @@ class WithoutContacts:
     def _rows(self) -> dict[str, tuple[Row, ...]]:
         """The rows of every contact that can end, the one that can end first."""
         found: dict[str, tuple[Row, ...]] = self._once(
-            "rows", lambda: {name: rows_of_constraint(self.system.motion, name) for name in self.contacts}
+            "rows", lambda: {name: Row.of_constraint(self.system.motion, name) for name in self.contacts}
         )
         return found
 
@@ -219,6 +219,7 @@ class WithoutContacts:
 
     def _function(self, key: str, scalars: Callable[[], tuple[Scalar, ...]]) -> RightHandSide:
         found: RightHandSide = self._once(
-            key, lambda: compiled(program_of(scalars(), self.system.symbols, inputs=self.system.inputs), "numpy")
+            key,
+            lambda: RightHandSide.of(Program.of(scalars(), self.system.symbols, inputs=self.system.inputs), "numpy"),
         )
         return found

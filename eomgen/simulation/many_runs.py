@@ -11,19 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen import (
-    Address,
-    RightHandSide,
-    at_unit_norms,
-    c_together,
-    compiled,
-    functions_in_c,
-    program_of,
-)
+from eomgen.codegen import Address, Program, RightHandSide, at_unit_norms, c_together, functions_in_c
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import CLOSING
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.start import start_speeds
+from eomgen.mechanics.start import Start
 from eomgen.simulation import constraint_drift, event_location
 from eomgen.simulation.constraint_drift import ARMED, REMEMBERED, STEEP
 from eomgen.simulation.phase_model import PhaseModel
@@ -281,10 +273,10 @@ class ManyStarts:
         """Function of the speeds at the start, and of the states of first order."""
         scope = self._system.scope
         states = (scope.value(part.start) for part in scope.model.states.values())
-        return self._of((*start_speeds(self._system).values(), *states))
+        return self._of((*Start.speeds_of(self._system).values(), *states))
 
     def _of(self, scalars: tuple[Scalar, ...]) -> RightHandSide:
-        return compiled(program_of(scalars, self._system.symbols, inputs=self._system.inputs), "numpy")
+        return RightHandSide.of(Program.of(scalars, self._system.symbols, inputs=self._system.inputs), "numpy")
 
 
 def _size(x: np.ndarray) -> np.ndarray:

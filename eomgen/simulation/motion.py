@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from eomgen.codegen import compiled, program_of
+from eomgen.codegen import Program, RightHandSide
 from eomgen.errors import DerivationError, RunFailed, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import PLACE
@@ -449,7 +449,7 @@ class FirstTime:
             return min(later)
         if values:
             raise DerivationError(f"the instant t = {max(values):g} s is before the start", fix="ask for a later one")
-        function = compiled(program_of((self.condition,), self.equations.symbols), "numpy")
+        function = RightHandSide.of(Program.of((self.condition,), self.equations.symbols), "numpy")
         x = np.array([self.start[node] for node in self.equations.symbols.x])
         events = Events(
             lambda t, _: function.many(t, np.tile(x, (len(t), 1)), self._phase.p), np.full(1, tolerances.COMPUTED), (0,)

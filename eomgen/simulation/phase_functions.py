@@ -7,7 +7,7 @@ from dataclasses import field, replace
 
 import numpy as np
 
-from eomgen.codegen import RightHandSide, bordered, compiled, compiled_together, program_of, right_hand_side
+from eomgen.codegen import Program, RightHandSide, Solve
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, WellPosed, with_accelerations
 from eomgen.symbolic.expression import Scalar
@@ -46,11 +46,11 @@ class PhaseFunctions:
     def _right_hand_side(self) -> RightHandSide:
         """x', and T and V in addition."""
         WellPosed(self.equations).refuse_massless()
-        program = right_hand_side(with_accelerations(self.equations))
-        energies = program_of(
+        program = Program.right_hand_side(with_accelerations(self.equations))
+        energies = Program.of(
             (self.equations.T, self.equations.V), self.equations.symbols, inputs=self.equations.system.inputs
         )
-        found, self.made["energies"] = compiled_together((program, energies), self.target)
+        found, self.made["energies"] = RightHandSide.compiled_together((program, energies), self.target)
         return found
 
     def _once(self, key: Hashable, make: Callable[[], RightHandSide]) -> RightHandSide:
@@ -80,9 +80,9 @@ class PhaseFunctions:
         return self._once(("in motion", scalars), lambda: self._function(scalars))
 
     def _function(self, scalars: tuple[Scalar, ...]) -> RightHandSide:
-        solve = bordered(self.equations) if self.equations.symbols.u else None
-        return compiled(
-            program_of(scalars, self.equations.symbols, inputs=self.equations.system.inputs, solve=solve), "numpy"
+        solve = Solve.bordered(self.equations) if self.equations.symbols.u else None
+        return RightHandSide.of(
+            Program.of(scalars, self.equations.symbols, inputs=self.equations.system.inputs, solve=solve), "numpy"
         )
 
     def kinematic(self, scalars: tuple[Scalar, ...]) -> RightHandSide:
@@ -90,5 +90,5 @@ class PhaseFunctions:
         inputs = self.equations.system.inputs
         return self._once(
             ("placed", scalars),
-            lambda: compiled(program_of(scalars, self.equations.symbols, inputs=inputs), "numpy"),
+            lambda: RightHandSide.of(Program.of(scalars, self.equations.symbols, inputs=inputs), "numpy"),
         )

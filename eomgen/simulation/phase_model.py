@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen import RightHandSide, bordered, compiled, kinematic_rates, program_of
+from eomgen.codegen import Program, RightHandSide, Solve, kinematic_rates
 from eomgen.errors import UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import (
@@ -373,12 +373,17 @@ def slope_of(equations: EquationsOfMotion, p: np.ndarray, target: str | None = N
         jacobian(further, equations.symbols.a),
     )
     entries = tuple(x for rows in parts for row in rows for x in row)
-    program = program_of(
-        entries, equations.system.symbols, inputs=equations.system.inputs, solve=bordered(equations) if n else None
+    program = Program.of(
+        entries,
+        equations.system.symbols,
+        inputs=equations.system.inputs,
+        solve=Solve.bordered(equations) if n else None,
     )
     if program.count.total > LONG:
         return None
-    return ExactSlope(compiled(program, target if program.count.total > SHORT else "numpy"), p, n, k, len(further))
+    return ExactSlope(
+        RightHandSide.of(program, target if program.count.total > SHORT else "numpy"), p, n, k, len(further)
+    )
 
 
 @dataclass(frozen=True)

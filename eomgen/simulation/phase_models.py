@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen import RightHandSide, compiled, program_of
+from eomgen.codegen import Program, RightHandSide
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import Rank, Row, holds_identically, rows_of_constraint
-from eomgen.mechanics.dynamics import EquationsOfMotion, System, assembled_by_recursion, system_of
+from eomgen.mechanics.constraints import Rank, Row, holds_identically
+from eomgen.mechanics.dynamics import EquationsOfMotion, System, assembled_by_recursion
 from eomgen.mechanics.free_bodies import equations_of_motion, with_friction
 from eomgen.mechanics.kinematics import GROUND, BodyLink, ContactMode, ContactModes
 from eomgen.model import Contact, Coordinate, Model, PointForce, Table
@@ -83,7 +83,7 @@ class Slides:
     @cached_property
     def _velocities(self) -> RightHandSide:
         scalars = tuple(sliding_velocity(self.system, contact) for contact in self.contacts)
-        return compiled(program_of(scalars, self.system.symbols, inputs=self.system.inputs), "numpy")
+        return RightHandSide.of(Program.of(scalars, self.system.symbols, inputs=self.system.inputs), "numpy")
 
 
 class PhaseModels:
@@ -198,11 +198,11 @@ class PhaseModels:
             return _opened(model, configuration.modes)
         all_open = {**configuration.modes, **dict.fromkeys(self.ends, OPEN)}
         released = _opened(model, all_open)
-        return system_of(released.scope.model, configuration.modes, begun_as=released)
+        return System.of(released.scope.model, configuration.modes, begun_as=released)
 
     @cached_property
     def _straight(self) -> bool:
-        system = system_of(self.model)
+        system = System.of(self.model)
         return all(stays_straight(system, constraint) for constraint in self.ends)
 
     def _length(self, system: System, body: str, k: int) -> tuple[bool, Scalar | None]:
@@ -218,7 +218,7 @@ def _opened(model: Model, modes: ContactModes) -> System:
         DerivationError: nothing can leave a contact that has ended.
     """
     closed: Mapping[str, ContactMode] = {name: mode for name, mode in modes.items() if mode.closed}
-    system = system_of(model, closed)
+    system = System.of(model, closed)
     for name, mode in modes.items():
         if not mode.closed:
             system = _released(system, name)
@@ -232,7 +232,7 @@ def _released(system: System, constraint: str) -> System:
         DerivationError: coordinates that satisfy the constraint by themselves cannot leave it.
     """
     model, modes = released(system, constraint)
-    after = system_of(model, modes, begun_as=system)
+    after = System.of(model, modes, begun_as=system)
     rows = [row for row in system.constraints.rows if row.constraint == constraint]
     if all(row.status == "closing" for row in rows):
         return after
@@ -321,7 +321,7 @@ class DerivedAt:
     def _in_constraints(self) -> list[int]:
         """The places of the parameters that stand in the constraints, closed or open."""
         motion = self._free.motion
-        rows = [row for name in motion.scope.model.constraints for row in rows_of_constraint(motion, name)]
+        rows = [row for name in motion.scope.model.constraints for row in Row.of_constraint(motion, name)]
         entries = (*self._free.constraints.rows, *rows)
         used = set(symbols_of([x for row in entries for x in (row.velocity, 0 if row.gap is None else row.gap)]))
         return [k for k, x in enumerate(self.system.symbols.parameters.values()) if x in used]
@@ -377,7 +377,7 @@ class DerivedAt:
         return found
 
     def _of(self, system: System, scalars: tuple[Scalar, ...]) -> RightHandSide:
-        return compiled(program_of(scalars, system.symbols, inputs=system.inputs), "numpy")
+        return RightHandSide.of(Program.of(scalars, system.symbols, inputs=system.inputs), "numpy")
 
 
 def _singular_value(J: np.ndarray, rank: int) -> np.ndarray:

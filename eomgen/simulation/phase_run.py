@@ -72,6 +72,26 @@ class PhaseRun:
         """True if a condition ended it."""
         return self.bound is None and self.run.status == "event"
 
+    @staticmethod
+    def joined(
+        models: PhaseModels,
+        runs: Sequence[PhaseRun],
+        *,
+        until: str | None = None,
+        reactions: bool = False,
+        outputs: Mapping[str, Expression] = MappingProxyType({}),
+    ) -> Trajectory:
+        """The motion through all phases, with the beginning and the end of each; a coordinate it lacks is 0 in it.
+
+        Args:
+            until: the condition that should end it, for its message.
+            reactions: True if these are among the columns.
+            outputs: formulas of further columns, by name.
+        """
+        found = _reported(_joined(models, runs), until)
+        found = _with_reactions(found, runs) if reactions else found
+        return _with_outputs(found, runs, outputs)
+
 
 PhaseCondition = Callable[[PhaseModel], Scalar]
 """A function that is to become 0, over the symbols, accelerations and multipliers of a phase."""
@@ -127,26 +147,6 @@ def _by_condition(phase_run: PhaseRun) -> PhaseRun:
 
 # -------- joined ----------------------------------------------------------------------------------------------
 # The phases of a motion as they were run -> Trajectory: all in one table, reactions too.
-
-
-def joined(
-    models: PhaseModels,
-    runs: Sequence[PhaseRun],
-    *,
-    until: str | None = None,
-    reactions: bool = False,
-    outputs: Mapping[str, Expression] = MappingProxyType({}),
-) -> Trajectory:
-    """The motion through all phases, with the beginning and the end of each; a coordinate that one lacks is 0 in it.
-
-    Args:
-        until: the condition that should end it, for its message.
-        reactions: True if these are among the columns.
-        outputs: formulas of further columns, by name.
-    """
-    found = _reported(_joined(models, runs), until)
-    found = _with_reactions(found, runs) if reactions else found
-    return _with_outputs(found, runs, outputs)
 
 
 def _reported(found: Trajectory, until: str | None) -> Trajectory:

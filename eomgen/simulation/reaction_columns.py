@@ -14,10 +14,10 @@ from functools import cached_property
 
 import numpy as np
 
-from eomgen.codegen import RightHandSide, compiled, program_of
+from eomgen.codegen import Program, RightHandSide
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import STILL
-from eomgen.mechanics.free_bodies import BodyEquation, NamedReaction, Reactions, named_reactions
+from eomgen.mechanics.free_bodies import BodyEquation, NamedReaction, Reactions
 from eomgen.symbolic.expression import Scalar
 from eomgen.symbolic.numeric import balanced, tolerances
 
@@ -41,7 +41,7 @@ class ReactionColumns:
     @cached_property
     def requested(self) -> tuple[NamedReaction, ...]:
         """The reactions of the columns, in their order."""
-        return named_reactions(self.reactions.balance) if self.given is None else self.given
+        return NamedReaction.all_of(self.reactions.balance) if self.given is None else self.given
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -123,7 +123,7 @@ class ReactionColumns:
         system = self.reactions.balance.system
         symbols = replace(system.symbols, z=system.symbols.z + system.symbols.a)
         outputs = (*(x for _, _, x in A), *b, *(x for _, _, x in C), *(named.given for named in self.requested))
-        return compiled(program_of(outputs, symbols, inputs=system.inputs), "numpy")
+        return RightHandSide.of(Program.of(outputs, symbols, inputs=system.inputs), "numpy")
 
     def _cut(self, numbers: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """(A, b, C, d) at every state."""

@@ -15,7 +15,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError, ExpressionError, RunFailed
 from eomgen.frozen import dataclass
-from eomgen.mechanics.instant import requests_of
+from eomgen.mechanics.instant import Quantities
 from eomgen.model import Model, Output, OutputSource, WrittenEquation, formula_at, requested_of
 from eomgen.simulation.columns import OutputColumns
 from eomgen.simulation.curves import ChebyshevPieces, resolved_curve
@@ -71,7 +71,7 @@ class WholeRun:
         try:
             if output.at is not None:
                 return self._at_events(output)
-            if requests_of(output.value, OutputSource.OF_A_RUN):
+            if Quantities.requested_by(output.value, OutputSource.OF_A_RUN):
                 return self._of_whole(output.value)
             start = float(self.runs[0].here.t)
             return _valued(self._number(output.value, self.runs[0], start), (start,))
@@ -80,7 +80,7 @@ class WholeRun:
 
     def outputs(self) -> dict[str, RunValue]:
         """Values of the model's outputs that are functions of a whole run, or belong to its events."""
-        requested = {name: output for name, output in self.model.outputs.items() if is_of_a_run(output)}
+        requested = {name: output for name, output in self.model.outputs.items() if WholeRun.answers(output)}
         return {name: self.of(output) for name, output in requested.items()}
 
     def sampled(self, formula: Expression) -> list[tuple[np.ndarray, np.ndarray]]:
@@ -116,11 +116,11 @@ class WholeRun:
 
     def called(self, call: Call) -> tuple[float, tuple[float, ...]]:
         """Value of a function of the run, and the instant of this value."""
-        if not requests_of(Expression(str(call), (("call", call),), (0,)), OutputSource.OF_A_RUN):
+        if not Quantities.requested_by(Expression(str(call), (("call", call),), (0,)), OutputSource.OF_A_RUN):
             what = f"'{call}' is a function of a state, next to functions of a whole run"
             raise DerivationError(what, fix=f"last({call})")
         formula = formula_at(call, 0)
-        if requests_of(formula, OutputSource.OF_A_RUN):
+        if Quantities.requested_by(formula, OutputSource.OF_A_RUN):
             raise DerivationError(
                 f"'{call}': a function of a whole run has no value along it", fix="request one after the other"
             )
@@ -177,7 +177,9 @@ class WholeRun:
         """The value at the n-th event, or at every one."""
         if not isinstance(output.at, WrittenEquation) or output.from_ is not None:
             raise DerivationError("it is no value of a run from the start", fix="`eomgen solve` answers it")
-        if requests_of(output.value, OutputSource.OF_A_RUN) or requests_of(output.value, OutputSource.SMALL_MOTIONS):
+        if Quantities.requested_by(output.value, OutputSource.OF_A_RUN) or Quantities.requested_by(
+            output.value, OutputSource.SMALL_MOTIONS
+        ):
             raise DerivationError(f"'{output.value.text}' belongs to no instant", fix="leave out `at`")
         events = self.events(output.at)
         if output.of_every_event:
@@ -285,6 +287,11 @@ class WholeRun:
         """Time from the start to the end [s]."""
         return float(self.runs[-1].run.end - self.runs[0].here.t)
 
+    @staticmethod
+    def answers(output: Output) -> bool:
+        """True if an output is a function of a whole run: extremes, means, or values at the n-th event."""
+        return output.event is not None or Quantities.requested_by(output.value, OutputSource.OF_A_RUN)
+
 
 _FUNCTIONS: dict[str, Callable[[WholeRun, Expression], tuple[float, tuple[float, ...]]]] = {
     "max": lambda run, formula: run.extreme(formula, 1),
@@ -296,11 +303,6 @@ _FUNCTIONS: dict[str, Callable[[WholeRun, Expression], tuple[float, tuple[float,
     "last": WholeRun.last,
     "period": WholeRun.period,
 }
-
-
-def is_of_a_run(output: Output) -> bool:
-    """True if an output is a function of a whole run: extremes, means, or values at the n-th event."""
-    return output.event is not None or requests_of(output.value, OutputSource.OF_A_RUN)
 
 
 def _valued(value: float, t: tuple[float, ...]) -> RunValue:

@@ -8,14 +8,14 @@ from functools import cached_property
 
 from eomgen.errors import DerivationError, MissingValues, ModelError, Problem
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import Freedom, freedom_of
-from eomgen.mechanics.dynamics import WellPosed, assembled_by_recursion, system_of
+from eomgen.mechanics.constraints import Freedom
+from eomgen.mechanics.dynamics import System, WellPosed, assembled_by_recursion
 from eomgen.mechanics.free_bodies import Structure
 from eomgen.mechanics.instant import InstantKinematics
 from eomgen.mechanics.kinematics import ContactModes, Motion, Scope, SystemScene
 from eomgen.mechanics.start import Branches, Start
 from eomgen.mechanics.statics import ContactsAtStart
-from eomgen.model import Model, Table
+from eomgen.model import Model, ModelOrPath, Table, Values, model_at
 
 
 @dataclass(frozen=True)
@@ -79,6 +79,24 @@ class Checked:
         return self.freedom.by_rank if integrability is None else integrability.positions
 
 
+def freedom_of(
+    model: ModelOrPath,
+    modes: ContactModes | None = None,
+    *,
+    parameters: Values | None = None,
+    start: Values | None = None,
+) -> Freedom:
+    """The degrees of freedom of a model, where its kinds are built; constraints that move dependent coordinates close.
+
+    Args:
+        modes: how contacts are that can end; what is not named is closed.
+        parameters, start: values that replace the model's, each as `model_at` takes it.
+    Raises:
+        DerivationError: a constraint that cannot hold; a dependent coordinate that no constraint determines.
+    """
+    return Freedom.of(model_at(model, parameters, start), modes)
+
+
 def checked_model(model: Model) -> Checked:
     """Checks a model: degrees of freedom, redundancy, closure of loops, cautions.
 
@@ -86,7 +104,7 @@ def checked_model(model: Model) -> Checked:
         ModelError: declared speeds that do not stand for the rates.
     """
     modes = ContactsAtStart.of(model).modes
-    freedom = freedom_of(model, modes)
+    freedom = Freedom.of(model, modes)
     still = not model.coordinates and bool(model.constraints or model.trusses)
     start = _start_of_loops(model, modes, freedom)
     return Checked(
@@ -94,7 +112,7 @@ def checked_model(model: Model) -> Checked:
         freedom,
         tuple(name for name, mode in modes.items() if not mode.closed),
         mobility=_mobility_of(model) if still else None,
-        structure=Structure.of(system_of(model, ContactsAtStart.at_rest(model))) if still else None,
+        structure=Structure.of(System.of(model, ContactsAtStart.at_rest(model))) if still else None,
         start=start,
         cautions=(
             *_open(model, start),
@@ -143,7 +161,7 @@ def _stiff(model: Model, modes: ContactModes, freedom: Freedom) -> Iterator[Prob
     for name, constraint in model.constraints.items() if freedom.by_rank is not None and model.space == "space" else ():
         for written, other in constraint.turned():
             try:
-                found = freedom_of(replace(model, constraints=Table({**model.constraints, name: other})), modes).by_rank
+                found = Freedom.of(replace(model, constraints=Table({**model.constraints, name: other})), modes).by_rank
             except (DerivationError, ModelError):  # its constraints do not close so
                 continue
             if found is not None and freedom.by_rank is not None and found > freedom.by_rank:
@@ -169,7 +187,7 @@ def _misplaced(model: Model) -> Iterator[Problem]:
 def _idle(model: Model, modes: ContactModes) -> tuple[Problem, ...]:
     """Coordinates that move no mass, or several that move none together."""
     try:
-        return WellPosed(assembled_by_recursion(system_of(model, modes))).massless_motions
+        return WellPosed(assembled_by_recursion(System.of(model, modes))).massless_motions
     except (DerivationError, ModelError):  # reported by the verbs that need equations of motion
         return ()
 
@@ -183,7 +201,7 @@ def _start_of_loops(model: Model, modes: ContactModes, freedom: Freedom) -> Loop
     if not model.coordinates or not (freedom.closing or model.speeds):
         return LoopStart()
     try:
-        system = system_of(model, modes)
+        system = System.of(model, modes)
         if not freedom.closing:
             return LoopStart()
         begun = Start.of(system)

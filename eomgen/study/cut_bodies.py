@@ -16,11 +16,11 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen import RightHandSide, compiled
+from eomgen.codegen import RightHandSide
 from eomgen.errors import DerivationError, MissingValues
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import Balance, CutForce, ForceKind, NamedReaction, forces_on_bodies
+from eomgen.mechanics.free_bodies import Balance, CutForce, ForceKind, NamedReaction
 from eomgen.model import AtRest, Model, WrittenEquation
 from eomgen.simulation import ReactionColumns
 from eomgen.study.motion import MotionFromStart, StateAtInstant, StateInNumbers
@@ -113,7 +113,7 @@ class CutState:
         Raises:
             DerivationError: something acts at no place.
         """
-        pushes = forces_on_bodies(self.balance)
+        pushes = CutForce.on_bodies(self.balance)
         flat: list[Scalar] = []
         for push in pushes:
             flat += [*push.at, *push.direction, *(push.along or Vector.ZERO), push.given, *push.shares.values()]
@@ -127,7 +127,7 @@ class CutState:
 
     @cached_property
     def _right_hand_side(self) -> RightHandSide:
-        return compiled(self.study.program, "numpy")
+        return RightHandSide.of(self.study.program, "numpy")
 
     @property
     def _accelerations(self) -> Iterable[float]:

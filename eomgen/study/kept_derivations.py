@@ -28,7 +28,7 @@ from eomgen import disk_cache
 from eomgen.errors import EomgenError
 from eomgen.files import beside
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics import system_of
+from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies import equations_of_motion
 from eomgen.mechanics.kinematics import ContactModes
 from eomgen.model import Model
@@ -127,7 +127,7 @@ def _entry(content: bytes) -> dict[str, Any] | None:
 
 
 def _values(model: Model, rng: Random) -> list[str]:
-    equations = equations_of_motion(system_of(model, _modes(model)))
+    equations = equations_of_motion(System.of(model, _modes(model)))
     symbols = equations.symbols
     balance, constraints = equations.residual
     rows = [*balance, *constraints, *_linear(equations.J, symbols.u, equations.sigma)]

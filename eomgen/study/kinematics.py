@@ -13,7 +13,7 @@ from math import isfinite
 from eomgen.errors import DerivationError, ModelError, UsageError
 from eomgen.mechanics.constraints import Rank
 from eomgen.mechanics.instant import InstantKinematics, KinematicState
-from eomgen.mechanics.start import refuse_lost
+from eomgen.mechanics.start import Start
 from eomgen.model import Given, Model, WrittenEquation, equation_in
 from eomgen.study.motion import MotionFromStart
 from eomgen.study.study import Study, exact_numbers
@@ -123,7 +123,7 @@ def _on_the_way(model: Model, at: WrittenEquation | None) -> KinematicState:
     when = "at the start" if at is None else f"when {at.text}"
     phase, exact, numbers = moment.phase, moment.exact, moment.numbers
     symbols = phase.system.symbols
-    refuse_lost({q: numbers[q] for q in symbols.q if q in numbers})
+    Start.refuse_lost({q: numbers[q] for q in symbols.q if q in numbers})
     needed = (*symbols.x, *([symbols.t] if _sees_time(phase) else []))
     whole = all(node in exact for node in needed) and (not numbers or sum(map(text_size, exact.values())) <= LONG)
     moving = dict(exact) if whole else exact_numbers(numbers)

@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from eomgen.codegen import compiled, program_of, right_hand_side
+from eomgen.codegen import Program, RightHandSide
 from eomgen.errors import DerivationError, EomgenError, MissingValues, RunFailed
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import holds_identically
-from eomgen.mechanics.dynamics import Extent, system_of
+from eomgen.mechanics.dynamics import Extent
 from eomgen.mechanics.kinematics import Located
 from eomgen.mechanics.start import ExactStart, Start
 from eomgen.model import Model, WrittenEquation
@@ -331,7 +331,7 @@ class MotionFromStart:
     def _start_rates(self) -> dict[str, float] | None:
         """The speeds at the start that replace the model's."""
         if self.at_rest and self.model.speeds:
-            return {u.name: 0.0 for u in system_of(self.model).symbols.u}
+            return {u.name: 0.0 for u in System.of(self.model).symbols.u}
         free = (q for q, part in self.model.coordinates.items() if not part.driven and not part.dependent)
         return {f"{q}'": 0.0 for q in free} if self.at_rest else None
 
@@ -553,7 +553,7 @@ class MotionFromStart:
         system, symbols = phase.system, phase.system.symbols
         x0 = np.array([self.numbers[node] for node in symbols.x])
         run = integrate(
-            compiled(right_hand_side(phase.explicit_while_sliding), "numpy"),
+            RightHandSide.of(Program.right_hand_side(phase.explicit_while_sliding), "numpy"),
             time=time,
             x0=x0,
             p=p,
@@ -607,7 +607,7 @@ class MotionFromStart:
         except RunFailed:
             run = self.run(WATCHED_BRIEFLY, INSTANTS, WATCHED_STEPS)
         system = self.phase.system
-        function = compiled(program_of(held.limits, system.symbols, inputs=system.inputs), "numpy")
+        function = RightHandSide.of(Program.of(held.limits, system.symbols, inputs=system.inputs), "numpy")
         with np.errstate(all="ignore"):
             over = function.many(run.t, run.x, self.p)
         worst = np.max(over, axis=1)

@@ -10,24 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen import (
-    Program,
-    RightHandSide,
-    Solve,
-    bordered,
-    compiled,
-    is_short,
-    kinematic_rates,
-    parameter_vector,
-    program_in_motion,
-    program_of,
-)
+from eomgen.codegen import Program, RightHandSide, Solve, is_short, kinematic_rates, parameter_vector
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Rank
 from eomgen.mechanics.dynamics import EquationsOfMotion, Explicit, System
 from eomgen.mechanics.free_bodies import Inverse, by_independent
-from eomgen.mechanics.instant import Quantities, requests_of
+from eomgen.mechanics.instant import Quantities
 from eomgen.model import Output, OutputSource, TypedNumbers, are_several, nearest, time_law, typed_values
 from eomgen.symbolic.exact import cramer, factor_solution
 from eomgen.symbolic.expression import (
@@ -84,9 +73,9 @@ def _of_an_instant(output: Output) -> str:
     """Why an output is no function of the state, "" where it may be one."""
     if output.at is not None or output.from_ is not None or output.side is not None or output.event is not None:
         return "it is requested at an instant"
-    if requests_of(output.value, OutputSource.SMALL_MOTIONS):
+    if Quantities.requested_by(output.value, OutputSource.SMALL_MOTIONS):
         return "it is of the linearized system"
-    return "it is of a whole run" if requests_of(output.value, OutputSource.OF_A_RUN) else ""
+    return "it is of a whole run" if Quantities.requested_by(output.value, OutputSource.OF_A_RUN) else ""
 
 
 # -------- inverse ---------------------------------------------------------------------------------------------
@@ -153,7 +142,7 @@ class InverseDynamics:
         """tau as a straight-line program: the recursion, and where constraints close one solve."""
         symbols = self.graph.system.symbols
         own = {name: node for name, node in symbols.inputs.items() if name in self.graph.inputs}
-        return program_of(
+        return Program.of(
             self.graph.tau,
             replace(symbols, inputs=own),
             inputs=self.graph.inputs,
@@ -163,7 +152,7 @@ class InverseDynamics:
 
     def function(self, target: str | None = None) -> InverseFunction:
         """`inverse(t, x, a, p, inputs=())`; the target as of `Equations.rhs`."""
-        return InverseFunction(self.names, compiled(self.program, target))
+        return InverseFunction(self.names, RightHandSide.of(self.program, target))
 
     def along(
         self, t: Any, motion: Mapping[str, Any], parameters: Mapping[str, float] | None = None
@@ -235,8 +224,8 @@ class Matrices:
         }
 
     def program(self, equations: EquationsOfMotion, accelerations: tuple[Node, ...] = ()) -> Program:
-        """The entries as one program; the systems behind them as of `program_of`."""
-        return program_of(
+        """The entries as one program; the systems behind them as of `Program.of`."""
+        return Program.of(
             tuple(self.entries.values()),
             equations.symbols,
             inputs=equations.inputs,
@@ -311,7 +300,7 @@ def _columns(equations: EquationsOfMotion) -> dict[str, tuple[Node, ...]]:
 
 def _solved(equations: EquationsOfMotion) -> Matrices:
     """Slopes by the `Solve` of the motion, with one more right-hand side for each column that is not zero."""
-    symbols, rates, motion = equations.symbols, kinematic_rates(equations), bordered(equations)
+    symbols, rates, motion = equations.symbols, kinematic_rates(equations), Solve.bordered(equations)
     left = dict(zip((*symbols.a, *symbols.lam), (x for rows in equations.residual for x in rows), strict=True))
     solves: dict[Node, Solve] = {}
     blocks: dict[str, ScalarRows] = {}
@@ -365,7 +354,7 @@ def reactions_program(values: Mapping[str, Scalar], equations: EquationsOfMotion
     Args:
         values: as of `determinate`.
     """
-    return tuple(values), program_in_motion(tuple(values.values()), equations)
+    return tuple(values), Program.in_motion(tuple(values.values()), equations)
 
 
 # -------- solved equations ------------------------------------------------------------------------------------
@@ -459,9 +448,9 @@ class GivenMotion:
         strangers = [x.name for x in symbols.x if depends_on(scalar, (x,))]
         if strangers:
             raise UsageError(f"the motion of '{name}' depends on '{strangers[0]}'", fix="give it as a function of t")
-        program = program_of(scalars, symbols, inputs=self.system.inputs)
+        program = Program.of(scalars, symbols, inputs=self.system.inputs)
         states = np.zeros((len(self.t), len(symbols.x)))
-        values = compiled(program, "numpy").many(self.t, states, self.p)
+        values = RightHandSide.of(program, "numpy").many(self.t, states, self.p)
         return values[:, 0], values[:, 1], values[:, 2]
 
     def _through(self, name: str, values: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -493,8 +482,8 @@ class GivenMotion:
         found = np.column_stack([*places, *(columns[u.name[:-1]][1] for u in symbols.u)])
         gaps = tuple(row.gap for row in self.system.constraints.closing if row.gap is not None)
         if gaps:
-            program = program_of(gaps, symbols, inputs=self.system.inputs)
-            open_ = np.abs(compiled(program, "numpy").many(self.t, found, self.p))
+            program = Program.of(gaps, symbols, inputs=self.system.inputs)
+            open_ = np.abs(RightHandSide.of(program, "numpy").many(self.t, found, self.p))
             if not np.max(open_, initial=0.0) <= tolerances.OPEN_GAP:
                 raise UsageError(
                     f"the motion opens the constraints by {np.max(open_):.3g}", fix="give one that they allow"

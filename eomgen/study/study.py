@@ -36,7 +36,6 @@ from eomgen.mechanics.dynamics import (
     refuse_jump,
     reported_of_nodes,
     signs_of_rates,
-    system_of,
     with_accelerations,
     with_nodes_balanced,
 )
@@ -45,11 +44,10 @@ from eomgen.mechanics.free_bodies import (
     NamedReaction,
     SystemFriction,
     equations_of_motion,
-    named_reactions,
     values_at_a_state,
     with_friction,
 )
-from eomgen.mechanics.instant import Quantities, requests_of
+from eomgen.mechanics.instant import Quantities
 from eomgen.mechanics.integrals import FirstIntegrals
 from eomgen.mechanics.kinematics import ContactMode, ContactModes
 from eomgen.mechanics.start import ExactStart, Start
@@ -158,11 +156,11 @@ class Study:
         Raises:
             ModelError: a free coordinate moves no mass.
         """
-        from eomgen.codegen import right_hand_side
+        from eomgen.codegen import Program
 
         WellPosed(self.derived).refuse_massless()
         with growing():
-            return right_hand_side(self.explicit)
+            return Program.right_hand_side(self.explicit)
 
     @cached_property
     def slopes(self) -> Matrices:
@@ -204,7 +202,7 @@ class Study:
         Raises:
             DerivationError: an unsupported body; a force that acts at no place.
         """
-        return tuple(named_reactions(Balance.of(self.system)))
+        return tuple(NamedReaction.all_of(Balance.of(self.system)))
 
     @property
     def units(self) -> dict[str, dict[str, str]]:
@@ -224,13 +222,13 @@ class Study:
             DerivationError: a force jumps there; an unsupported body.
             ModelError: a free coordinate moves no mass.
         """
-        from eomgen.codegen import compiled, parameter_vector
+        from eomgen.codegen import RightHandSide, parameter_vector
         from eomgen.simulation import ReactionColumns
 
         p, symbols, start = parameter_vector(self.model), self.system.symbols, list(self.state_at_start.values())
         known = {x: Fraction(value) for x, value in zip(symbols.x, start, strict=True)}
         refuse_jump(self.system, known | {symbols.t: Fraction(0)})
-        columns = ReactionColumns(self.reactions, compiled(self.program, "numpy"))
+        columns = ReactionColumns(self.reactions, RightHandSide.of(self.program, "numpy"))
         values = columns.along(np.zeros(1), np.array([start]), p)[0]
         rounding = tolerances.ROUNDING * max((abs(x) for x in values if math.isfinite(x)), default=0.0)
         return {
@@ -384,9 +382,9 @@ class Study:
     @cached_property
     def statics(self) -> StaticEquations:
         """The equations of rest."""
-        from eomgen.mechanics.equilibrium import static_equations
+        from eomgen.mechanics.equilibrium import StaticEquations
 
-        return static_equations(self.system)
+        return StaticEquations.of(self.system)
 
     @cached_property
     def equilibria(self) -> Equilibria:
@@ -395,9 +393,9 @@ class Study:
         Raises:
             DerivationError: the forces hold an unknown; dry friction; a drive that turns steadily.
         """
-        from eomgen.mechanics.equilibrium import all_equilibria
+        from eomgen.mechanics.equilibrium import Equilibria
 
-        return all_equilibria(self.statics)
+        return Equilibria.of(self.statics)
 
     # -- as functions of the state ---------------------------------------------------------------
 
@@ -556,15 +554,15 @@ class Study:
         It is the method by which reactions and accelerations are eliminated, or that of the functions of masses.
         """
         unknown = not formula.names.isdisjoint(self.system.symbols.unknowns)
-        if unknown or requests_of(formula, OutputSource.BALANCE):
+        if unknown or Quantities.requested_by(formula, OutputSource.BALANCE):
             return OutputSource.BALANCE
         if self.needs_equations(formula):
             return "equations of motion"
-        return OutputSource.MASSES if requests_of(formula, OutputSource.MASSES) else ""
+        return OutputSource.MASSES if Quantities.requested_by(formula, OutputSource.MASSES) else ""
 
     def needs_equations(self, formula: Expression) -> bool:
         """True if accelerations, multipliers or reactions stand in the formula."""
-        if requests_of(formula, OutputSource.BALANCE):
+        if Quantities.requested_by(formula, OutputSource.BALANCE):
             return True
         return depends_on(self.raw(formula), (*self.system.symbols.a, *self.system.symbols.lam))
 
@@ -603,7 +601,7 @@ def study_of(model: Model) -> Study:
 
     def made() -> Study:
         contacts = ContactsAtStart.of(model)
-        return Study(system_of(model, contacts.modes), contacts.assumptions)
+        return Study(System.of(model, contacts.modes), contacts.assumptions)
 
     return recalled(model, study_of, made)
 
@@ -613,14 +611,14 @@ def study_at_rest(model: Model) -> Study:
 
     def made() -> Study:
         modes, assumptions = _contacts_at_rest(model)
-        return Study(system_of(model, modes), assumptions)
+        return Study(System.of(model, modes), assumptions)
 
     return recalled(model, study_at_rest, made)
 
 
 def study_of_modes(model: Model, modes: ContactModes | None = None) -> Study:
     """The study of a model with its contacts as they are named, what is not named closed."""
-    return Study(system_of(model, modes or {}))
+    return Study(System.of(model, modes or {}))
 
 
 def exact_numbers(values: Mapping[Node, Scalar | float]) -> dict[Node, Scalar]:
@@ -673,10 +671,10 @@ def _opened(names: frozenset[str]) -> ContactModes:
 
 def _place(model: Model, modes: ContactModes) -> Equilibrium | None:
     """The equilibrium nearest to the start with these contacts; None where there is none, or it cannot be sought."""
-    from eomgen.mechanics.equilibrium import nearest_equilibrium, static_equations
+    from eomgen.mechanics.equilibrium import Equilibrium, StaticEquations
 
     try:
-        return nearest_equilibrium(static_equations(system_of(model, modes)))
+        return Equilibrium.nearest(StaticEquations.of(System.of(model, modes)))
     except (DerivationError, MissingValues, ModelError, UsageError, NoValue, ZeroDivisionError):
         return None
 

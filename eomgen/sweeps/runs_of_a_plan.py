@@ -20,11 +20,11 @@ from eomgen.model import (
     LIKE,
     Model,
     ModelOrPath,
+    Range,
     Typed,
     TypedNumbers,
     bytes_at,
     loads,
-    range_of,
     refuse_what_is_not_set,
     requested_of,
     seconds,
@@ -250,7 +250,7 @@ def _values(model: Model, name: str, given: Any) -> tuple[float, ...]:
     if isinstance(given, str):
         logarithmic = given.startswith("log:")
         text = f"{'log:' * logarithmic}{name}={given.removeprefix('log:')}"
-        return range_of(model, text, starts=True, declared=False).values
+        return Range.of(model, text, starts=True, declared=False).values
     refuse_what_is_not_set(model, name, starts=True)
     typed = TypedNumbers(model, name, declared=False)
     try:

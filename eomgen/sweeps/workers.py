@@ -28,7 +28,7 @@ from typing import Any
 
 from eomgen.errors import EomgenError, RunFailed, UsageError, WriteFailed
 from eomgen.frozen import dataclass
-from eomgen.mechanics.instant import requests_of
+from eomgen.mechanics.instant import Quantities
 from eomgen.model import AtRest, Model, Output, OutputSource, requested_of, with_values
 from eomgen.pipeline import simulator
 from eomgen.questions import solve
@@ -356,7 +356,7 @@ def is_without_motion(output: Output) -> bool:
     return (
         isinstance(output.at, AtRest)
         or output.from_ is not None
-        or requests_of(output.value, OutputSource.SMALL_MOTIONS)
+        or Quantities.requested_by(output.value, OutputSource.SMALL_MOTIONS)
     )
 
 

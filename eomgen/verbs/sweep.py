@@ -7,7 +7,7 @@ from dataclasses import replace
 from eomgen.documents import Document
 from eomgen.errors import UsageError
 from eomgen.frozen import dataclass
-from eomgen.model import Model, assignments, range_of, requested_typed
+from eomgen.model import Model, Range, assignments, requested_typed
 from eomgen.questions import variant_of
 from eomgen.sweeps import TABLE, Stepped, planned, spread_of, sweep_reported, swept
 from eomgen.verbs.assignments import typed
@@ -48,7 +48,7 @@ def sweep_document(
         drawn = variant_of(model, requested.variant).taken
         requested = replace(requested, set_=(*(f"{x.name}={x.typed}" for x in drawn), *requested.set_))
     valued, _ = typed(model, {"set_": requested.set_, "start": requested.start})
-    ranges = [range_of(valued.model, word, starts=True) for word in requested.over]
+    ranges = [Range.of(valued.model, word, starts=True) for word in requested.over]
     spreads = [spread_of(valued.model, word) for word in requested.random]
     ask = [requested_typed(valued.model, text) for text in requested.ask]
     critical = requested_typed(valued.model, requested.critical)

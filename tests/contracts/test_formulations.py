@@ -19,7 +19,7 @@ from eomgen.mechanics.dynamics import accelerations as articulated
 from eomgen.mechanics.dynamics import formulations as recursive
 from eomgen.mechanics.dynamics.accelerations import exact_accelerations
 from eomgen.mechanics.dynamics.formulations import ALL, Formulation
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, system_of
+from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
 from eomgen.mechanics.dynamics.tree import branches_of
 from eomgen.mechanics.kinematics.inertia import SystemInertia
 from eomgen.model.likely_mistakes import unbuilt
@@ -41,7 +41,7 @@ others = each("formulation", ALL[1:])
 def system_named(name: str) -> System | None:
     """A model of models/ (None: a part of it is not built yet)."""
     model = eomgen.load(MODELS[name])
-    return None if unbuilt(model) else system_of(model)
+    return None if unbuilt(model) else System.of(model)
 
 
 @cache
@@ -96,7 +96,7 @@ def test_every_formulation_gives_the_same_accelerations(formulation, name):
 @others
 def test_every_formulation_gives_the_same_accelerations_of_random_trees(formulation, space, seed):
     """As above, for systems that nobody has thought of."""
-    system = system_of(eomgen.loads(random_model(space, seed)))
+    system = System.of(eomgen.loads(random_model(space, seed)))
     reference = accelerations(ALL[0].assemble(system), system)
     assert close(accelerations(formulation.assemble(system), system), reference)
 

@@ -11,7 +11,7 @@ from moving import at, equal, rate, state_of, written
 
 import eomgen
 from eomgen.errors import NotYet
-from eomgen.mechanics.dynamics.system import System, system_of
+from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.kinematics.motion import BodyLink, spin_between
 from eomgen.model.joints import ALL
 from eomgen.model.joints.ball import SEQUENCES
@@ -275,5 +275,5 @@ mass = 1
 inertia = 1
 joint = { kind = "fixed", on = "mover", angle = "pi/2" }
 """)
-    R = system_of(model).motion.link("child").pose.R
+    R = System.of(model).motion.link("child").pose.R
     assert [row[0] for row in R] == [0, 1, 0]

@@ -16,8 +16,8 @@ from tools import marked, needs, tool
 
 import eomgen
 from eomgen.codegen.lowering import statements
-from eomgen.codegen.program import Program, program_of, right_hand_side
-from eomgen.codegen.rhs import compiled, target_named
+from eomgen.codegen.program import Program
+from eomgen.codegen.rhs import RightHandSide, target_named
 from eomgen.codegen.right_answers import vectors
 from eomgen.codegen.targets.base import Role
 from eomgen.codegen.targets.c import C
@@ -49,16 +49,16 @@ def every_operation() -> Program:
     ops = "sqrt sin cos asin acos atan sinh cosh tanh exp log abs sign".split()
     made = [g.call(op, x * y) for op in ops] + [g.call(op, x, y) for op in "atan2 min max less less_equal".split()]
     made += [(2 + x * x) ** y, g.select(g.call("less", x, y), x, 1 / y), g.call("min", g.sqrt(x), y)]
-    return program_of(made, s)
+    return Program.of(made, s)
 
 
 PROGRAMS = {
     "every operation": every_operation,
-    "pendulum": lambda: right_hand_side(pendulum()),
-    "inputs": lambda: right_hand_side(cart_pole(F=0)),
-    "a loop": lambda: right_hand_side(spring_row(20)),
-    "a constraint": lambda: right_hand_side(tied_pendulum()),
-    "a constraint said three times": lambda: right_hand_side(tied_pendulum(3)),
+    "pendulum": lambda: Program.right_hand_side(pendulum()),
+    "inputs": lambda: Program.right_hand_side(cart_pole(F=0)),
+    "a loop": lambda: Program.right_hand_side(spring_row(20)),
+    "a constraint": lambda: Program.right_hand_side(tied_pendulum()),
+    "a constraint said three times": lambda: Program.right_hand_side(tied_pendulum(3)),
     "closed loops": lambda: eomgen.derive(eomgen.load(MODELS / "four_bar.toml")).program,
     "samples": lambda: eomgen.derive(eomgen.loads(PUSHED)).program,
 }
@@ -84,7 +84,7 @@ def test_a_language_is_a_table_of_words(name, tmp_path):
 @pytest.mark.parametrize("longest", [None, 30])
 def test_a_program_calls_what_comes_before_it_and_names_what_it_reads(language, longest):
     """Functions stand before those that call them, and every table is read, in parts or whole."""
-    program = right_hand_side(tied_pendulum(3))
+    program = Program.right_hand_side(tied_pendulum(3))
     made = statements(program, replace(language, longest=longest), "dx")
     texts = ["\n".join(language.defines(f)) for f in (*made.kernels, *made.bodies)]
     names = [f.name for f in (*made.kernels, *made.bodies)]
@@ -108,7 +108,7 @@ def test_every_language_runs_a_program_that_is_cut_into_parts(target, name, monk
     monkeypatch.setattr("eomgen.codegen.targets.base.statements", cut)
     program = PROGRAMS[name]()
     assert name != "closed loops" or "part1(" in target_named(target).text(program, "eomgen", Role.RHS)
-    function = compiled(program, target)
+    function = RightHandSide.of(program, target)
     for v in vectors(program):
         largest, found = max([1.0, *(abs(y) for y in v.result if y == y)]), function(v.t, v.x, v.p, v.inputs or ())
         assert found == pytest.approx(v.result, rel=0, abs=v.tolerance * largest, nan_ok=True)
@@ -126,7 +126,7 @@ def solve(M, J, f, g):
 
 def test_a_language_may_solve_in_its_own_way():
     """Where loops with pivots are not a language's way its own solve is called, and no kernel is written."""
-    program = right_hand_side(tied_pendulum(3))
+    program = Program.right_hand_side(tied_pendulum(3))
     language = replace(PYTHON, defined={"solve": OWN_SOLVE})
     made = statements(program, language, "dx")
     assert made.kernels == made.tables == () and "solve" in made.ops

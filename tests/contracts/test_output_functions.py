@@ -15,7 +15,7 @@ from each import each
 import eomgen
 from eomgen.errors import DerivationError
 from eomgen.mechanics.dynamics import formulations as recursive
-from eomgen.mechanics.dynamics.system import system_of
+from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.instant.quantities import Quantities
 from eomgen.mechanics.statics.contacts import ContactsAtStart
 from eomgen.model.outputs import ALL, FUNCTIONS
@@ -290,7 +290,7 @@ CERTIFIED = {
 @cache
 def system(name: str):
     model = eomgen.loads(MODELS[name])
-    return system_of(model, ContactsAtStart.of(model).modes)
+    return System.of(model, ContactsAtStart.of(model).modes)
 
 
 def scaled(unit: Unit) -> Fraction:
@@ -446,7 +446,7 @@ acceleration = [0, "-g"]
 
 def test_the_multiplier_of_an_eliminated_row_is_that_of_the_free_bodies(monkeypatch):
     """r(lam) = M a + c - Q - J^T lam = 0 over all coordinates, r by Newton and Euler; of the wrong sign it is told."""
-    found = system_of(eomgen.loads(LINKED))
+    found = System.of(eomgen.loads(LINKED))
     equations, symbols = recursive.assembled_by_recursion(found), found.symbols
     values = {
         node: Fraction(found.scope.model.parameters[n].value.evaluate({})) for n, node in symbols.parameters.items()

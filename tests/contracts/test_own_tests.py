@@ -22,7 +22,7 @@ from tools import marked, tool
 import eomgen
 from eomgen import files
 from eomgen.codegen import build
-from eomgen.codegen.program import RESERVED, program_of
+from eomgen.codegen.program import RESERVED, Program
 from eomgen.codegen.rhs import target_named
 from eomgen.codegen.right_answers import vectors
 from eomgen.codegen.statements import Language
@@ -141,7 +141,7 @@ def roots():
     """min(sqrt(y), x) beside x + y: the first has no value where y < 0."""
     s = symbols("x y")
     (x, y), g = s.q, s.graph
-    program = program_of([g.call("min", g.sqrt(y), x), x + y, g.call("max", x, g.sqrt(y)), 3], s)
+    program = Program.of([g.call("min", g.sqrt(y), x), x + y, g.call("max", x, g.sqrt(y)), 3], s)
     return ((program, Description("Roots", "by hand", {}, vectors(program))),)
 
 
@@ -157,7 +157,7 @@ def words():
     x, y, *_ = s.q
     outputs += [g.call(op, x * y) for op in "sin atan sinh tanh exp abs sign sqrt asin".split()]
     outputs += [g.call(op, x, y) for op in "atan2 min max less less_equal".split()] + [(2 + x * x) ** y]
-    program = program_of(outputs, s, inputs={name: k * s.t for k, name in enumerate(s.inputs)})
+    program = Program.of(outputs, s, inputs={name: k * s.t for k, name in enumerate(s.inputs)})
     return ((program, Description("Words", "by hand", {}, vectors(program))),)
 
 
@@ -270,7 +270,7 @@ def test_single_precision_passes_its_own_test_by_measured_tolerances(target, tmp
 def test_thousands_of_names_and_results_pass_the_language_s_own_test(target, tmp_path):
     """1200 results of 1200 parameters: more than a statement of Fortran holds, or a constant of Rust."""
     s = symbols("x", " ".join(f"k{i}" for i in range(1200)))
-    program = program_of([k * s.q[0] for k in s.parameters.values()], s)
+    program = Program.of([k * s.q[0] for k in s.parameters.values()], s)
     reported = Description("Many", "by hand", {}, vectors(program, count=1))
     files.write_all(tmp_path, texts_of("many", [(program, reported)], targets=[target]))
     assert OWN_TESTS[target](tmp_path) == ""

@@ -15,8 +15,8 @@ from hand_made import cart_pole, pendulum
 import eomgen
 from eomgen import disk_cache
 from eomgen.codegen import build, rhs
-from eomgen.codegen.program import right_hand_side
-from eomgen.codegen.rhs import compiled
+from eomgen.codegen.program import Program
+from eomgen.codegen.rhs import RightHandSide
 from eomgen.errors import RunFailed
 from eomgen.resources import patience
 from eomgen.simulation import many_runs as march
@@ -67,7 +67,7 @@ def test_a_compiler_that_lies_is_named_and_numpy_runs(how, cache, tmp_path, monk
         build.function_of(build.library(TEXT), "twice")
     assert "fake-cc" in str(refused.value) and len(str(refused.value)) < 3000
     if how != "leaves out a function":  # these are other functions' names
-        assert compiled(right_hand_side(pendulum())).target == "numpy"
+        assert RightHandSide.of(Program.right_hand_side(pendulum())).target == "numpy"
         assert capsys.readouterr().err.count("\n") == 1
         assert list(cache.iterdir()) == []
 
@@ -137,10 +137,10 @@ def test_an_entry_of_which_one_bit_is_turned_is_never_loaded(cache, monkeypatch)
 
 def test_two_processes_compile_the_same_at_once(cache):
     """Both get a function that is right; one entry stays."""
-    program, children = right_hand_side(cart_pole(F=0)), []
+    program, children = Program.right_hand_side(cart_pole(F=0)), []
     for _ in range(3):
         if (pid := os.fork()) == 0:
-            found = compiled(program, "c")(0.0, [0.0, 0.1, 0.0, 0.0], [1.0, 1.0, 1.0, 9.81])
+            found = RightHandSide.of(program, "c")(0.0, [0.0, 0.1, 0.0, 0.0], [1.0, 1.0, 1.0, 9.81])
             os._exit(0 if abs(found[2]) > 0 else 1)
         children.append(pid)
     assert [os.waitpid(pid, 0)[1] for pid in children] == [0, 0, 0]

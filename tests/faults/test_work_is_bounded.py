@@ -19,7 +19,7 @@ from eomgen.cli import main
 from eomgen.cli_common import Lasting
 from eomgen.errors import EomgenError
 from eomgen.mechanics.constraints import closure
-from eomgen.mechanics.dynamics.system import system_of
+from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.kinematics import places
 from eomgen.mechanics.start.exact import ExactStart
 from eomgen.questions import outputs_answered as answers
@@ -448,5 +448,5 @@ def test_no_equation_of_a_loop_is_longer_than_a_page(monkeypatch):
 
     monkeypatch.setattr(places, "_waves", waves)
     model = eomgen.load(Path(__file__).parents[1] / "laws" / "machines" / "double_cardan.toml")
-    assert ExactStart(system_of(model)).exact
+    assert ExactStart(System.of(model)).exact
     assert max(sizes) <= places.PAGE

@@ -10,7 +10,7 @@ import numpy as np
 
 import eomgen
 from eomgen.mechanics.dynamics import formulations as recursive
-from eomgen.mechanics.dynamics.system import System, system_of
+from eomgen.mechanics.dynamics.system import System
 from eomgen.proof.states import real_state
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.node import Node, Scalar
@@ -21,7 +21,7 @@ State = dict[Node, Any]
 
 def written(text: str, space: str = "plane") -> System:
     """The system of a model without its first lines."""
-    return system_of(eomgen.loads(f'eomgen = 1\nname = "test"\nspace = "{space}"\n{text}'))
+    return System.of(eomgen.loads(f'eomgen = 1\nname = "test"\nspace = "{space}"\n{text}'))
 
 
 def state_of(system: System, seed: int = 1) -> State:

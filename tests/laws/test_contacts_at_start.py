@@ -12,7 +12,7 @@ import pytest
 import eomgen
 from eomgen.codegen.rhs import RightHandSide
 from eomgen.errors import OpenConstraints
-from eomgen.mechanics.dynamics.system import system_of
+from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.free_bodies.friction import equations_of_motion
 from eomgen.mechanics.kinematics.scene import ContactMode
 from eomgen.mechanics.start import state as open_constraints
@@ -195,7 +195,7 @@ def test_a_contact_that_is_taken_as_closed_and_opens_with_the_speeds_is_contradi
     """Thrown up from the floor, y' = 1.2: closed at the start is wrong; let go from rest it is right."""
     thrown = BALL.replace("HEIGHT", "0").replace('{ start = "START" }', "{ start = 0, speed = 1.2 }")
     resting = BALL.replace("HEIGHT", "0").replace('"START"', "0")
-    reported = [leaving_at_start(equations_of_motion(system_of(eomgen.loads(text)))) for text in (thrown, resting)]
+    reported = [leaving_at_start(equations_of_motion(System.of(eomgen.loads(text)))) for text in (thrown, resting)]
     assert reported == ["'floor' is closed, and opens with 1.2 m/s where the motion starts", ""]
 
 
@@ -217,6 +217,6 @@ def test_how_near_ties_come_to_closing_is_sought_for_a_reader_alone(monkeypatch)
     assert eomgen.simulate(model, time=0.1, target="numpy").ok
     assert not sought
     with pytest.raises(OpenConstraints) as refused:
-        Start.of(system_of(model))
+        Start.of(System.of(model))
     assert "open by 0.5" in str(pickle.loads(pickle.dumps(refused.value)))
     assert sought == [1]

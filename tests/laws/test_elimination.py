@@ -17,7 +17,7 @@ from slow_run import usual
 import eomgen
 from eomgen.errors import DerivationError, UsageError
 from eomgen.mechanics.constraints import elimination
-from eomgen.mechanics.dynamics.system import System, system_of
+from eomgen.mechanics.dynamics.system import System
 from eomgen.proof import certificate, identities
 from eomgen.symbolic.exact import cramer
 from eomgen.symbolic.exact.equality import equal_at_random_states
@@ -183,7 +183,7 @@ def test_the_certificate_holds(name):
 @cases
 def test_rates_of_dependent_coordinates_keep_the_ties(name):
     """W^T xi + s_t = 0 for each eliminated row that determines a coordinate, whatever u."""
-    rows = [row for row in system_of(model(name)).constraints.rows if row.eliminates]
+    rows = [row for row in System.of(model(name)).constraints.rows if row.eliminates]
     assert len(rows) == CASES[name].count("dependent = true")
     assert equal_at_random_states([(row.velocity, 0) for row in rows]).equal
 
@@ -221,14 +221,14 @@ def test_speeds_are_the_independent_ones_and_eliminated_rows_leave_J():
 
 def test_redundant_loops_leave_nothing_to_multipliers():
     """Rows that follow from those used up are eliminated too: on phi = 0 their J would be nothing but rounding."""
-    system = system_of(model("three cranks"))
+    system = System.of(model("three cranks"))
     assert [row.status for row in system.constraints.rows] == ["eliminated"] * 4
     assert [row.eliminates == "" for row in system.constraints.rows].count(True) == 1
 
 
 def test_a_four_bar_follows_in_closed_form():
     """b beta' = -a sin(alpha - gamma) alpha' / sin(beta - gamma): by determinants, no pivot below the line."""
-    system = system_of(eomgen.load(MODELS / "four_bar.toml"))
+    system = System.of(eomgen.load(MODELS / "four_bar.toml"))
     names = system.scope.names
     alpha, beta, gamma = (names[name] for name in ("alpha", "beta", "gamma"))
     sin = system.scope.graph.call

@@ -14,7 +14,7 @@ import eomgen
 from eomgen.documents import rendered
 from eomgen.documents.json_form import as_dict
 from eomgen.errors import DerivationError, UsageError
-from eomgen.mechanics.dynamics.system import system_of
+from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.equilibrium.reactions import holding_of
 from eomgen.mechanics.equilibrium.search import Equilibria, Equilibrium
 from eomgen.model.model import Model
@@ -34,7 +34,7 @@ def model_of(text: str, **parameters: float | str) -> Model:
 
 
 def found_in(model: Model) -> Equilibria:
-    return Study(system_of(model)).equilibria
+    return Study(System.of(model)).equilibria
 
 
 def exact(place: Equilibrium) -> dict[str, str]:
@@ -439,7 +439,7 @@ P = { value = "P", at = "equilibrium" }
 def test_a_toggle_press():
     """P = F/(2 tan b)"""
     model = model_of(TOGGLE, l="{ value = 1, positive = true }", F=10, b="{ value = 0.6, positive = true }")
-    (P,) = holding_of(system_of(model)).unknowns.values()
+    (P,) = holding_of(System.of(model)).unknowns.values()
     assert to_text(P) == "F/(2*tan(b))"
     assert eomgen.solve(model)["P"].value == pytest.approx(5 / math.tan(0.6), abs=1e-12)
 
@@ -477,13 +477,13 @@ def test_a_ladder_on_a_smooth_wall_held_by_a_string():
 def test_more_unknowns_than_freedoms_are_refused():
     text = LADDER.replace("[coordinates]", 'T = "another"\n[coordinates]').replace('["-S", 0]', '["-S - T", 0]')
     with pytest.raises(DerivationError, match="more unknowns than degrees of freedom"):
-        holding_of(system_of(model_of(text + WEIGHT, m=10, l=4, g=10, b=1)))
+        holding_of(System.of(model_of(text + WEIGHT, m=10, l=4, g=10, b=1)))
 
 
 def test_an_unknown_that_does_no_work_holds_nothing():
     text = LADDER.replace('["-S", 0]', '[0, "S"]')
     with pytest.raises(DerivationError, match="no unknown load does work"):
-        holding_of(system_of(model_of(text + WEIGHT, m=10, l=4, g=10, b=1)))
+        holding_of(System.of(model_of(text + WEIGHT, m=10, l=4, g=10, b=1)))
 
 
 # -- what is asked -----------------------------------------------------------------------------------

@@ -15,8 +15,8 @@ from mpmath import mp, mpf
 
 import eomgen
 from eomgen.errors import DerivationError
-from eomgen.mechanics.dynamics.system import system_of
-from eomgen.mechanics.instant.kinematic_state import body_motions, composition_of
+from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.instant.kinematic_state import BodyMotion, composition_of
 from eomgen.mechanics.instant.motion_kind import Kinds
 from eomgen.mechanics.kinematics.motion import (
     VelocityField,
@@ -190,7 +190,7 @@ def test_parts_in_the_axes_of_a_body_have_the_same_magnitude(space):
 @each("model", ["arm3", "elastic_pendulum", "bead_on_turning_hoop", "cart_pole", "four_bar"])
 def test_two_ways_to_the_motion_of_a_point_agree(model):
     """d/dt p = v_t + v_r and d/dt v = a_t + a_r + a_C at random exact states, from every body."""
-    system = system_of(eomgen.load(f"models/{model}.toml"))
+    system = System.of(eomgen.load(f"models/{model}.toml"))
     scope, motion = system.scope, system.motion
     pairs = []
     for body in motion.index:
@@ -464,7 +464,7 @@ def test_every_body_of_a_mechanism_has_its_motion_told():
     model = eomgen.load("models/slider_crank.toml")
     motion = MotionFromStart(model, False)
     system = motion.phase.system
-    motions = {m.body: m for m in body_motions(system, {}, Kinds(system, motion.start))}
+    motions = {m.body: m for m in BodyMotion.all_of(system, {}, Kinds(system, motion.start))}
     assert [to_text(x) for x in motions["flywheel"].center] == ["0", "0", "0"]
     assert motions["piston"].center is None
     assert motions["piston"].kind.name == "rectilinear translation"

@@ -12,8 +12,8 @@ from known_answers import MODELS
 
 import eomgen
 from eomgen.documents.equation_steps import simple_constants
-from eomgen.mechanics.dynamics.system import system_of
-from eomgen.mechanics.equilibrium.equations import static_equations
+from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.equilibrium.equations import StaticEquations
 from eomgen.mechanics.free_bodies import velocity_plan as blocks
 from eomgen.mechanics.free_bodies.structure import Structure
 from eomgen.mechanics.linearization.first_order import FirstOrder
@@ -28,7 +28,7 @@ chain = runpy.run_path(str(MODELS / "chain.py"))["chain"]
 
 
 def at_rest(model: eomgen.Model) -> FirstOrder:
-    return replace(FirstOrder.of(system_of(model)), at_rest=True)
+    return replace(FirstOrder.of(System.of(model)), at_rest=True)
 
 
 def nodes_of(rows: Any) -> int:
@@ -44,7 +44,7 @@ def test_stiffness_of_a_hanging_chain_grows_with_its_links() -> None:
 def test_forces_at_rest_of_a_long_chain_are_not_written_out() -> None:
     """n forces of n terms, each of n angles: they stay as they came, a few nodes a link."""
     n = 40
-    assert nodes_of([static_equations(system_of(eomgen.loads(chain(n)))).equations]) < 20 * n
+    assert nodes_of([StaticEquations.of(System.of(eomgen.loads(chain(n)))).equations]) < 20 * n
 
 
 @pytest.mark.parametrize("name", ["four_bar", "cart_pole", "slider_crank", "spatial_four_bar", "gimbal_gyroscope"])
@@ -69,7 +69,7 @@ def test_members_have_closed_forms_only_where_they_are_told(monkeypatch: pytest.
     requested: list[tuple[str, str]] = []
     right = blocks._of_ends
     monkeypatch.setattr(blocks, "_of_ends", lambda plan, ends: requested.append(ends) or right(plan, ends))
-    structure = Structure.of(system_of(eomgen.load(MODELS / "k_truss.toml")))
+    structure = Structure.of(System.of(eomgen.load(MODELS / "k_truss.toml")))
     for named in requested_reactions(structure).values():
         requested.clear()
         work = by_virtual_work(structure, named)

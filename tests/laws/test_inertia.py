@@ -11,7 +11,7 @@ from scipy.integrate import dblquad
 
 import eomgen
 from eomgen.documents.json_form import as_dict
-from eomgen.mechanics.dynamics.system import System, system_of
+from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.kinematics.inertia import SystemInertia
 from eomgen.mechanics.kinematics.principal_axes import Principal
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
@@ -228,7 +228,7 @@ def assembled(seed: int) -> System:
         joint = {"kind": "fixed", "at": some(), "axis": some(), "angle": number(rng.uniform(-3, 3))}
         return joint if on is None else {**joint, "on": on}
 
-    return system_of(
+    return System.of(
         eomgen.Model(
             space="space",
             points={"P": some(), "O": [0, 0, 0]},
@@ -314,7 +314,7 @@ EXACT_AXES = [(CUBE, "corner"), (PLATE, "corner"), (PARTICLES, "O")]
 @pytest.mark.parametrize(("tables", "point"), EXACT_AXES)
 def test_closed_axes_are_orthonormal_right_handed_and_principal(tables, point):
     """R R^T = 1, det R = 1, R I R^T = diag, at a state of the parameters."""
-    system = system_of(eomgen.Model(**tables))
+    system = System.of(eomgen.Model(**tables))
     motion, symbols = system.motion, system.scope.symbols.parameters
     I = SystemInertia(motion).about(motion.position(motion.place(point)), list(motion.index))
     found = Principal.of(I, system.scope)
@@ -426,7 +426,7 @@ def test_the_angular_momentum_of_particles_is_that_of_their_tensor():
         for name, body in PARTICLES["bodies"].items()
     }
     hub = {"hub": {"joint": {"kind": "revolute", "angle": "q"}}}
-    system = system_of(
+    system = System.of(
         eomgen.Model(
             space="space",
             parameters=PARTICLES["parameters"],

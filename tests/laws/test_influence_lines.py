@@ -9,7 +9,7 @@ import pytest
 from each import each
 
 import eomgen
-from eomgen.mechanics.dynamics.system import system_of
+from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.free_bodies.structure import Structure
 from eomgen.mechanics.statics.influence import InfluenceLine
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
@@ -65,7 +65,7 @@ B = { kind = "support", point = "T.b3", normal = [0, 1] }
 
 
 def line(text: str, requested: str) -> InfluenceLine:
-    return InfluenceLine.of(Structure.of(system_of(eomgen.loads(text))), requested)
+    return InfluenceLine.of(Structure.of(System.of(eomgen.loads(text))), requested)
 
 
 def numbers(*scalars) -> list[float]:

@@ -12,8 +12,8 @@ from scipy.integrate import solve_ivp
 from slow_run import in_slow_run
 
 import eomgen
-from eomgen.codegen.program import right_hand_side
-from eomgen.codegen.rhs import compiled
+from eomgen.codegen.program import Program
+from eomgen.codegen.rhs import RightHandSide
 from eomgen.errors import RunFailed
 from eomgen.mechanics.dynamics.accelerations import with_accelerations
 from eomgen.mechanics.integrals.first_integrals import FirstIntegrals
@@ -359,7 +359,7 @@ def test_the_numbers_are_those_of_an_integration_and_keep_the_energy(name):
     t = instant.numbers[symbols.t]
     if math.isnan(t):
         return
-    rhs = compiled(right_hand_side(with_accelerations(each.equations)), "numpy")
+    rhs = RightHandSide.of(Program.right_hand_side(with_accelerations(each.equations)), "numpy")
     p = np.array(list(values.values()))
     x0 = [first[node.name] for node in nodes]
     run = solve_ivp(lambda t, x: rhs(t, x, p), (0, t), x0, rtol=1e-11, atol=1e-11, method="DOP853")

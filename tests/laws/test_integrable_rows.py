@@ -10,7 +10,7 @@ from each import each
 
 import eomgen
 from eomgen.mechanics.constraints import Rank
-from eomgen.mechanics.dynamics import system_of
+from eomgen.mechanics.dynamics import System
 from eomgen.symbolic.expression import gradient, inner, is_zero, substituted
 from eomgen.symbolic.numeric import FLOAT, evaluate
 
@@ -21,7 +21,7 @@ MODELS = Path(__file__).parents[2] / "models"
 def test_an_integral_of_velocities_stays_along_what_the_row_allows(name):
     """Differences of the printed function over short steps, rates as given functions of time included, t not 0."""
     model = eomgen.load(MODELS / f"{name}.toml")
-    system = system_of(model, eomgen.derive(model).graph.system.modes, with_laws=True)  # as it is printed
+    system = System.of(model, eomgen.derive(model).graph.system.modes, with_laws=True)  # as it is printed
     system = system.free or system
     scope, symbols, rng = system.scope, system.symbols, random.Random(3)
     found = Rank(system.constraints).integrability

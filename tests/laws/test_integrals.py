@@ -11,8 +11,8 @@ from scipy.integrate import solve_ivp
 from slow_run import in_slow_run
 
 import eomgen
-from eomgen.codegen.program import right_hand_side
-from eomgen.codegen.rhs import compiled
+from eomgen.codegen.program import Program
+from eomgen.codegen.rhs import RightHandSide
 from eomgen.mechanics.dynamics.accelerations import with_accelerations
 from eomgen.mechanics.integrals import first_integrals as integrals
 from eomgen.mechanics.integrals.first_integrals import FirstIntegrals
@@ -234,7 +234,7 @@ def phase(text: str) -> Study:
 def motion(each: Study, end: float) -> tuple[np.ndarray, list[dict]]:
     """(times, states by node with the parameters) of a run by scipy, to 1e-11."""
     system = each.system
-    rhs = compiled(right_hand_side(with_accelerations(each.equations)), "numpy")
+    rhs = RightHandSide.of(Program.right_hand_side(with_accelerations(each.equations)), "numpy")
     parameters = each.model.numeric_parameters()
     p = np.array(list(parameters.values()))
     q, u = each.model.start_values()

@@ -17,8 +17,8 @@ from slow_run import sampled, usual
 import eomgen
 from eomgen.cli import main
 from eomgen.codegen.build import compiler
-from eomgen.codegen.program import program_of
-from eomgen.codegen.rhs import compiled
+from eomgen.codegen.program import Program
+from eomgen.codegen.rhs import RightHandSide
 from eomgen.codegen.right_answers import vectors
 from eomgen.errors import DerivationError, UsageError
 from eomgen.mechanics.dynamics import formulations as projection
@@ -96,8 +96,8 @@ def agrees_with_projection(model: eomgen.Model) -> None:
         sum((m * a for m, a in zip(row, system.symbols.a, strict=True)), start=-Q)
         for row, Q in zip(assembly.M, assembly.forcing, strict=True)
     )
-    other = compiled(
-        program_of(tuple(needed), system.symbols, inputs=system.inputs, accelerations=system.symbols.a), "numpy"
+    other = RightHandSide.of(
+        Program.of(tuple(needed), system.symbols, inputs=system.inputs, accelerations=system.symbols.a), "numpy"
     )
     function = inverse.function("numpy")
     for vector in vectors(inverse.program):

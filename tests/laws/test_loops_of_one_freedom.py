@@ -16,7 +16,7 @@ from slow_run import in_slow_run
 
 import eomgen
 from eomgen.errors import EomgenError
-from eomgen.mechanics.dynamics.system import system_of
+from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.start.assembly_modes import Branches
 from eomgen.mechanics.start.state import Start
 
@@ -453,7 +453,7 @@ def test_a_linkage_that_reaches_only_to_its_folded_place_does_not_start_there():
     """With L - b > |OP| the loops cannot close; where all bars lie in line they meet to second order alone."""
     model = eomgen.loads(PEAUCELLIER.replace("L = 0.9", "L = 1").replace("c = 0.35", "c = 0.3"))
     with pytest.raises(EomgenError, match="does not close at the start"):
-        Start.of(system_of(model))
+        Start.of(System.of(model))
 
 
 def test_check_says_that_a_start_does_not_close(run_verb, tmp_path):
@@ -465,7 +465,7 @@ def test_check_says_that_a_start_does_not_close(run_verb, tmp_path):
 
 def test_hinges_and_welds_do_not_close_turned_over():
     """n_1 . n_2 = -1 satisfies the rows of a hinge too, and is another machine."""
-    system = system_of(eomgen.loads(VICE))
+    system = System.of(eomgen.loads(VICE))
     found = Branches.of(system, Start.of(system).values)
     turns = [(each.values["ps"] + 0.3) / math.tau for each in (found.here, *found.others)]
     assert turns[0] == pytest.approx(0)
@@ -484,7 +484,7 @@ def with_start(**lines: str) -> str:
 
 def test_speeds_in_a_change_point_are_completed_along_a_branch():
     """J u = 0 leaves two speeds free there; a branch leads on only where n^T gamma(u) = 0: here c' = a', b' = 0."""
-    found = Start.of(system_of(eomgen.loads(PARALLELOGRAM)))
+    found = Start.of(System.of(eomgen.loads(PARALLELOGRAM)))
     assert found.fork is not None
     assert found.values["c'"] == pytest.approx(2)
     assert found.values["b'"] == pytest.approx(0, abs=1e-9)

@@ -13,7 +13,7 @@ from random_systems import Writer
 from slow_run import usual
 
 import eomgen
-from eomgen.mechanics.dynamics.system import System, system_of
+from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.free_bodies.inverse import DrivingForces
 from eomgen.mechanics.free_bodies.reactions import Reactions
 from eomgen.mechanics.free_bodies.solution import Indeterminate
@@ -109,7 +109,7 @@ def compared(text: str, seed: int, t: float = 0.0, derived: str = "") -> tuple[i
     Args:
         derived: the text that is derived, the same but for its parameters' values.
     """
-    tree, system = state(text, seed, t), system_of(eomgen.loads(derived or text))
+    tree, system = state(text, seed, t), System.of(eomgen.loads(derived or text))
     size = max(1.0, float(np.max(np.abs(tree.balance.right))))
     assert tree.balance.residual < 1e-8 * size, "the reference itself is in balance"
     reactions = Reactions.of(system)
@@ -168,7 +168,7 @@ def test_a_joint_that_gives_way_is_held_by_its_reaction(space, seed):
         ("force", f'kind = "prismatic", displacement = "d", {along}', e),
         ("couple", turn if space == "plane" else f"{turn}, {along}", e if space == "space" else np.array([0, 0, 1])),
     ]:
-        system = system_of(eomgen.loads(given_way(text, body, moves)))
+        system = System.of(eomgen.loads(given_way(text, body, moves)))
         (found,) = values(tree, system, (DrivingForces(system).along("d"),))
         expected = sum((R @ way)[k] * tree.reaction(body, what, k) for k in range(3) if tree.carried(what, k))
         assert abs(found - expected) < 1e-8 * max(1.0, abs(expected)), f"{what} of {body} along {way}\n{text}"

@@ -9,7 +9,7 @@ import pytest
 from random_frames import stiff_frame
 
 import eomgen
-from eomgen.mechanics.dynamics.system import system_of
+from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.free_bodies.structure import Structure
 from eomgen.mechanics.statics.forces_in_sections import KINDS, SectionForces
 from eomgen.mechanics.statics.influence import InfluenceLine
@@ -35,7 +35,7 @@ def between(rng: Random, length: int) -> Fraction:
 def test_a_section_carries_what_acts_before_it(seed, members):
     """N = -F_t, V = F_n, M = sum of F_n (x - s) - couples, at two random places of every member."""
     frame, rng = stiff_frame(seed, members), Random(seed)
-    system = system_of(eomgen.loads(frame.text))
+    system = System.of(eomgen.loads(frame.text))
     found = StaticReactions.of(system)
     assert not found.disagreeing
     a = system.scope.names["a"]
@@ -51,7 +51,7 @@ def test_a_section_carries_what_acts_before_it(seed, members):
 def test_an_influence_line_is_the_force_under_a_load_of_1_at_any_place(seed, members):
     """N, V or M at a section of one member, the load anywhere on any other or on the same one."""
     frame, rng = stiff_frame(seed, members), Random(seed)
-    system = system_of(eomgen.loads(frame.text))
+    system = System.of(eomgen.loads(frame.text))
     structure = Structure.of(system)
     kind, i = rng.choice(KINDS), rng.randrange(members)
     x = between(rng, frame.length[i])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import eomgen
-from eomgen.mechanics.free_bodies.names_of_reactions import named_reactions
+from eomgen.mechanics.free_bodies.names_of_reactions import NamedReaction
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 BICYCLE = """
@@ -151,7 +151,7 @@ def test_reactions_as_code_are_those_of_the_balance_where_its_coefficients_vanis
     b = np.array(evaluate(tuple(e.needed for e in balance.equations), state, FLOAT), dtype=float)
     rho = np.linalg.lstsq(A, b, rcond=1e-10)[0]
     assert pytest.approx(b, abs=1e-9) == A @ rho
-    for named in named_reactions(balance):
+    for named in NamedReaction.all_of(balance):
         K = np.zeros(len(rho))
         K[list(named.combination)] = evaluate(tuple(named.combination.values()), state, FLOAT)
         if named.name in found:

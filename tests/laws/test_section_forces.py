@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import eomgen
-from eomgen.mechanics.dynamics.system import system_of
+from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.free_bodies.reactions import Reactions
 from eomgen.mechanics.statics.forces_in_sections import KINDS, SectionForces
 from eomgen.symbolic.exact.solving import vanishes
@@ -44,7 +44,7 @@ tip = { kind = "force", point = "beam.D", force = [0, "-F"] }
 
 
 def along(text: str, body: str) -> SectionForces:
-    return SectionForces.of(Reactions.of(system_of(eomgen.loads(text))), body)
+    return SectionForces.of(Reactions.of(System.of(eomgen.loads(text))), body)
 
 
 def exact(text: str, *requested: str) -> list[str | None]:
@@ -264,7 +264,7 @@ load = { kind = "force", point = "slide.e", force = [0, "-P"] }
 
 def test_an_eye_pushes_its_rail_where_it_is():
     """V = P, M = P (x - c) before the eye at c, nothing behind it; not where the line of the rail begins."""
-    system = system_of(eomgen.loads(RESTS_BY_AN_EYE))
+    system = System.of(eomgen.loads(RESTS_BY_AN_EYE))
     before, behind = SectionForces.of(Reactions.of(system), "wall").pieces
     values = {x: 6 if x.name == "P" else 1.5 if x.name == "c" else 4 for x in system.symbols.parameters.values()}
     reported = [[piece.value(kind, x) for kind in KINDS] for piece, x in ((before, Fraction(1, 2)), (behind, 3))]

@@ -11,7 +11,7 @@ from random_structures import RandomStructure, determinate
 
 import eomgen
 from eomgen.errors import DerivationError
-from eomgen.mechanics.dynamics.system import system_of
+from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.free_bodies.structure import Structure
 from eomgen.mechanics.statics.virtual_work import (
     StaticReactions,
@@ -30,7 +30,7 @@ DEPENDENT = 1e-9  # of the largest singular value
 
 
 def solved(text: str) -> StaticReactions:
-    return StaticReactions.of(system_of(eomgen.loads(text)))
+    return StaticReactions.of(System.of(eomgen.loads(text)))
 
 
 def values(found: StaticReactions) -> dict[str, float]:
@@ -70,7 +70,7 @@ def test_mobility_and_indeterminacy_are_those_of_the_rank_in_floats(spare):
         names, _, _ = structure.floats.equations()
         sizes = structure.singular_values
         rank = int(np.sum(sizes > DEPENDENT * sizes[0]))
-        found = Structure.of(system_of(eomgen.loads(structure.text)))
+        found = Structure.of(System.of(eomgen.loads(structure.text)))
         assert (found.rank, found.mobility, found.indeterminacy) == (rank, 6 - rank, len(names) - rank)
         assert len(found.loose) == found.mobility and len(found.stresses) == found.indeterminacy
 
@@ -78,11 +78,11 @@ def test_mobility_and_indeterminacy_are_those_of_the_rank_in_floats(spare):
 def test_loose_motions_are_forbidden_by_nothing_and_self_stresses_are_in_balance():
     """G^T xi = 0 for every loose motion, G rho = 0 for every self-stress, exactly."""
     structure = RandomStructure(Random(3), bodies=3, spare=-2)
-    loose = Structure.of(system_of(eomgen.loads(structure.text)))
+    loose = Structure.of(System.of(eomgen.loads(structure.text)))
     for plan in loose.loose:
         for component in loose.components:
             assert plan.vanishes((plan.work_of_effects(component.effects),))
-    tight = Structure.of(system_of(eomgen.loads(RandomStructure(Random(4), bodies=2, spare=2).text)))
+    tight = Structure.of(System.of(eomgen.loads(RandomStructure(Random(4), bodies=2, spare=2).text)))
     for stress in tight.stresses:
         for k in range(len(tight.columns)):
             total = sum((share * tight.rows[j].get(k, 0) for j, share in stress.items()), start=0)
@@ -91,7 +91,7 @@ def test_loose_motions_are_forbidden_by_nothing_and_self_stresses_are_in_balance
 
 def test_released_mechanism_moves_along_its_reaction_alone():
     """W_k . xi = 1 for the released reaction, 0 for every other."""
-    structure = Structure.of(system_of(eomgen.loads(determinate(11, bodies=3).text)))
+    structure = Structure.of(System.of(eomgen.loads(determinate(11, bodies=3).text)))
     for released in range(len(structure.components)):
         plan = structure.released(released)
         for j, component in enumerate(structure.components):
@@ -105,7 +105,7 @@ def test_line_loads_do_the_work_of_the_integral():
         '[forces]\nq = { kind = "distributed", body = "AB", between = ["A", "B"], '
         'intensities = [[0, "-p"], ["p", "-4*p"]] }',
     )
-    structure = Structure.of(system_of(eomgen.loads(text)))
+    structure = Structure.of(System.of(eomgen.loads(text)))
     load = next(x for x in loads_at_rest(structure) if x.name == "q")
     plan = structure.released(structure.index("reaction_n(B)"))
     ones = {node: 1.0 for node in structure.system.symbols.parameters.values()}
@@ -134,7 +134,7 @@ B = { kind = "support", point = "AB.B", normal = [0, 1] }
 
 def test_gerber_beam_by_virtual_work():
     """The centres of the mechanism without A are B and D: -4 a V_A - 36 p a^2 = 0."""
-    found = StaticReactions.of(system_of(eomgen.load("models/gerber_beam.toml")))
+    found = StaticReactions.of(System.of(eomgen.load("models/gerber_beam.toml")))
     exact = {name: to_text(reaction.work.value) for name, reaction in found.by_name.items()}
     assert exact["reaction_n(A)"] == "-9*p*a" and exact["reaction_n(B)"] == "18*p*a"
     assert exact["reaction_y(E)"] == "7*p*a" and exact["reaction_couple(E)"] == "-20*p*a^2"
@@ -146,7 +146,7 @@ def test_gerber_beam_by_virtual_work():
 
 def test_virtual_work_does_not_use_the_solution_of_the_balance(monkeypatch):
     """Nothing of the bodies' equations is solved for the reactions."""
-    structure = Structure.of(system_of(eomgen.load("models/gerber_beam.toml")))
+    structure = Structure.of(System.of(eomgen.load("models/gerber_beam.toml")))
 
     def refused(*_, **__):
         raise AssertionError("the balance was solved")

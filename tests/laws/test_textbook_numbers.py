@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 from slow_run import in_slow_run
 
 import eomgen
-from eomgen.mechanics.dynamics.system import system_of
+from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.start.assembly_modes import Branches
 
 pytestmark = pytest.mark.slow
@@ -476,7 +476,7 @@ P1 = { kind = "pin", points = ["c1.end", "r1.end"] }
 P2 = { kind = "pin", points = ["c2.end", "r2.end"] }
 """
     )
-    branches = Branches.of(system_of(eomgen.loads(text)), {"q": 0, "a1": 0, "b1": 0, "a2": 0, "b2": 0})
+    branches = Branches.of(System.of(eomgen.loads(text)), {"q": 0, "a1": 0, "b1": 0, "a2": 0, "b2": 0})
     assert branches is not None
     small = [x for way in branches.others for x in way.values.values() if abs(x) < 1e-6]
     assert small

@@ -16,7 +16,7 @@ from moving import solved, written
 
 import eomgen
 from eomgen.errors import EomgenError, ModelError
-from eomgen.mechanics.constraints.rank import freedom_of
+from eomgen.mechanics.constraints.rank import Freedom
 from eomgen.mechanics.kinematics.symbols import primitive
 from eomgen.symbolic.expression.derivatives import gradient
 from eomgen.symbolic.expression.formula import function
@@ -269,7 +269,7 @@ def test_a_guide_in_space_is_a_prismatic_joint():
     one = values_of(free + WEIGHT + requested.replace("NAME", "rail"))
     other = values_of(slide + WEIGHT + requested.replace("NAME", "block"))
     assert one == pytest.approx(other, abs=1e-9)
-    assert freedom_of(model_of(free)).by_rank == 1
+    assert Freedom.of(model_of(free)).by_rank == 1
 
 
 BEVEL = """
@@ -617,7 +617,7 @@ CASES = {
 def test_frobenius_and_chow_tell_what_a_row_of_velocities_is(name):
     """dw(X, Y) = 0 on what is allowed; the fields and their brackets span the positions that are reached."""
     laws, integrable, in_velocity, in_position = CASES[name]
-    freedom = freedom_of(model_of(rates(*laws), "plane"))
+    freedom = Freedom.of(model_of(rates(*laws), "plane"))
     assert freedom.integrability is not None
     assert [row.integrable for row in freedom.integrability.rows] == integrable
     assert (freedom.by_rank, freedom.integrability.positions) == (in_velocity, in_position)
@@ -661,7 +661,7 @@ def test_no_rules_are_sought_for_an_elliptic_integral(monkeypatch):
     """phi' = f(s) s' is holonomic; f(s) ds with roots of cos(k s) has no closed form: no rule of sympy's is tried"""
     tried = []
     monkeypatch.setattr("sympy.integrals.manualintegrate.manualintegrate", lambda *given: tried.append(given))
-    (row,) = freedom_of(model_of(WAVY, "plane")).integrability.rows
+    (row,) = Freedom.of(model_of(WAVY, "plane")).integrability.rows
     assert row.integrable and row.integral is None and not tried
 
 
@@ -680,7 +680,7 @@ def test_short_integrals_of_roots_of_sines_are_given():
 def test_a_ball_that_rolls_reaches_all_five_freedoms():
     """Two rows of no slip on a plane, with a unit quaternion: 3 degrees of freedom in velocity, 5 in position."""
     text = BALL.replace("slip = true\n", "").replace('friction = "mu"\n', "")
-    freedom = freedom_of(model_of(text))
+    freedom = Freedom.of(model_of(text))
     assert freedom.integrability is not None
     assert (freedom.by_rank, freedom.integrability.positions) == (3, 5)
 

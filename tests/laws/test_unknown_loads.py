@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import eomgen
-from eomgen.mechanics.dynamics.system import system_of
+from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.free_bodies.reactions import Reactions
 
 LEVER = """
@@ -151,7 +151,7 @@ def test_a_motion_does_not_follow_from_an_unknown_force():
 
 def test_the_bodies_are_in_balance_with_what_was_found():
     """G rho + (d applied/dP) P + applied = 0 in every row."""
-    reactions = Reactions.of(system_of(eomgen.loads(LEVER)))
+    reactions = Reactions.of(System.of(eomgen.loads(LEVER)))
     (P,) = reactions.unknowns
     assert reactions.unknown(P.name) is reactions.unknowns[P]
     assert reactions.indeterminate == ()

@@ -38,9 +38,6 @@ from eomgen.mechanics.constraints.rank import Rank as Rank
 # A row of velocities alone
 from eomgen.mechanics.constraints.rank import VelocityRow as VelocityRow
 
-# The degrees of freedom of a model, where its kinds are built; constraints that move dependent coordinates close
-from eomgen.mechanics.constraints.rank import freedom_of as freedom_of
-
 # a sliding velocity that is none [m/s]
 from eomgen.mechanics.constraints.rows import STILL as STILL
 
@@ -55,6 +52,3 @@ from eomgen.mechanics.constraints.rows import hold_identically as hold_identical
 
 # True if the scalar is zero at all values of its symbols (exactly, at random states)
 from eomgen.mechanics.constraints.rows import holds_identically as holds_identically
-
-# The rows that a constraint has while it is closed, whether it is so or not: how far an open contact is open
-from eomgen.mechanics.constraints.rows import rows_of_constraint as rows_of_constraint

@@ -23,7 +23,7 @@ from eomgen.mechanics.kinematics import (
     primitive,
 )
 from eomgen.mechanics.state import Numbers
-from eomgen.model import ModelOrPath, Values, model_at
+from eomgen.model import Model
 from eomgen.symbolic.exact import LinearSystem, Pivots, simplest
 from eomgen.symbolic.expression import (
     Node,
@@ -116,45 +116,39 @@ class Freedom:
         """The constraints with rows that close."""
         return tuple(dict.fromkeys(constraint for constraint, _ in self.closing_rows))
 
+    @classmethod
+    def of(cls, model: Model, modes: ContactModes | None = None) -> Freedom:
+        """The degrees of freedom of a model, where its kinds are built.
 
-def freedom_of(
-    model: ModelOrPath,
-    modes: ContactModes | None = None,
-    *,
-    parameters: Values | None = None,
-    start: Values | None = None,
-) -> Freedom:
-    """The degrees of freedom of a model, where its kinds are built; constraints that move dependent coordinates close.
+        Constraints that move dependent coordinates close.
 
-    Args:
-        modes: how contacts are that can end; what is not named is closed.
-        parameters, start: values that replace the model's, each as `model_at` takes it.
-    Raises:
-        DerivationError: a constraint that cannot hold; a dependent coordinate that no constraint determines.
-    """
-    model = model_at(model, parameters, start)
-    waiting = dict.fromkeys(kind for _, kind in model.unbuilt_constraints)
-    if waiting:
-        return Freedom(not_counted=", ".join(waiting))
-    try:
-        constraints = Constraints.of(Motion.of(Scope.of(model)), modes=modes)
-    except NotYet as error:
-        return Freedom(not_counted=error.what)
-    if constraints.motion.scope.dependent:
-        Elimination.of(constraints)
-    count, formula = Rank(constraints).counted()
-    identical = tuple((row.constraint, row.number) for row in constraints.rows if row.identical)
-    closing = tuple((row.constraint, row.number) for row in constraints.closing)
-    try:
-        state = Closure(constraints).generic()
-        redundant, integrability = Rank(constraints).redundant(state), Rank(constraints).integrability
-        shared = rows_held_twice(constraints, redundant, state)
-    except (DerivationError, MissingValues) as error:
-        return Freedom(None, count, formula, (), identical, closing, error.what)
-    scope = constraints.motion.scope
-    speeds = len(scope.symbols.u) - len(scope.quaternions)
-    by_rank = speeds - len(constraints.closing) + len(redundant)
-    return Freedom(by_rank, count, formula, (*redundant, *shared), identical, closing, integrability=integrability)
+        Args:
+            modes: how contacts are that can end; what is not named is closed.
+        Raises:
+            DerivationError: a constraint that cannot hold; a dependent coordinate that no constraint determines.
+        """
+        waiting = dict.fromkeys(kind for _, kind in model.unbuilt_constraints)
+        if waiting:
+            return cls(not_counted=", ".join(waiting))
+        try:
+            constraints = Constraints.of(Motion.of(Scope.of(model)), modes=modes)
+        except NotYet as error:
+            return cls(not_counted=error.what)
+        if constraints.motion.scope.dependent:
+            Elimination.of(constraints)
+        count, formula = Rank(constraints).counted()
+        identical = tuple((row.constraint, row.number) for row in constraints.rows if row.identical)
+        closing = tuple((row.constraint, row.number) for row in constraints.closing)
+        try:
+            state = Closure(constraints).generic()
+            redundant, integrability = Rank(constraints).redundant(state), Rank(constraints).integrability
+            shared = rows_held_twice(constraints, redundant, state)
+        except (DerivationError, MissingValues) as error:
+            return cls(None, count, formula, (), identical, closing, error.what)
+        scope = constraints.motion.scope
+        speeds = len(scope.symbols.u) - len(scope.quaternions)
+        by_rank = speeds - len(constraints.closing) + len(redundant)
+        return cls(by_rank, count, formula, (*redundant, *shared), identical, closing, integrability=integrability)
 
 
 # -- by formula ------------------------------------------------------------------------------------

@@ -108,6 +108,13 @@ class Row:
     def label(self) -> str:
         return f"lam({self.constraint}, {self.number})"
 
+    @staticmethod
+    def of_constraint(motion: Motion, name: str) -> tuple[Row, ...]:
+        """The rows that a constraint has while it is closed, even if it is open: how far it is."""
+        constraint = motion.scope.model.constraints[name]
+        rows = constraint.rows(SystemScene(motion, f"constraints.{name}"))
+        return tuple(_row(motion, name, number, row, used=False) for number, row in enumerate(rows, start=1))
+
 
 @dataclass(frozen=True)
 class Constraints:
@@ -198,13 +205,6 @@ class Constraints:
         stuck = [contact for contact in held if (modes or {})[contact.name].sense == 0]
         rows += [_row(motion, contact.name, 1, _held_in_joint(motion, contact), used=False) for contact in stuck]
         return Constraints(motion, tuple(rows))
-
-
-def rows_of_constraint(motion: Motion, name: str) -> tuple[Row, ...]:
-    """The rows that a constraint has while it is closed, whether it is so or not: how far an open contact is open."""
-    constraint = motion.scope.model.constraints[name]
-    rows = constraint.rows(SystemScene(motion, f"constraints.{name}"))
-    return tuple(_row(motion, name, number, row, used=False) for number, row in enumerate(rows, start=1))
 
 
 def _held_in_joint(motion: Motion, contact: Contact) -> ConstraintRow:

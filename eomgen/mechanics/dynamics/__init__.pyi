@@ -58,9 +58,6 @@ from eomgen.mechanics.dynamics.system import EquationsOfMotion as EquationsOfMot
 # Motion, loads and constraints from which every formulation assembles the equations; none of them uses another
 from eomgen.mechanics.dynamics.system import System as System
 
-# Motion, loads and constraints of a model, dependent coordinates eliminated
-from eomgen.mechanics.dynamics.system import system_of as system_of
-
 # Part of a model that has no value in a state
 from eomgen.mechanics.dynamics.wellposed import Valueless as Valueless
 

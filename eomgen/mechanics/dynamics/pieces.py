@@ -17,6 +17,7 @@ from eomgen.symbolic.exact import readable, vanishes
 from eomgen.symbolic.expression import (
     Fraction,
     Node,
+    Sampled,
     Scalar,
     State,
     depends_on,
@@ -25,7 +26,6 @@ from eomgen.symbolic.expression import (
     is_zero,
     linear_terms,
     order,
-    sampled_of,
     substituted,
 )
 from eomgen.symbolic.numeric import (
@@ -178,7 +178,7 @@ class Division:
     def conditions(self, x: Node, choice: int) -> Iterator[Condition]:
         """Conditions under which a node makes this choice."""
         if x.op == "sampled":
-            ends = sampled_of(x.args[1]).ends(x.graph.pi)
+            ends = Sampled.of(x.args[1]).ends(x.graph.pi)
             if choice > 0:
                 yield self._condition(ends[choice - 1] - x.args[0])
             if choice < len(ends):

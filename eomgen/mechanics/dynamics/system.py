@@ -194,7 +194,7 @@ class System:
             place = as_expression(to_text(starts[name]))
             table[name] = table[name].altered(motion=place, rate=None, acceleration=None, start=None, speed=None)
         model = scope.model.altered(coordinates=Table(table))
-        return system_of(model, self.modes), tuple(moved)
+        return System.of(model, self.modes), tuple(moved)
 
     @staticmethod
     def free_of(
@@ -212,23 +212,23 @@ class System:
             begun = Assembly(constraints).begun_places()
         return System(motion, Loads.of(motion, begun, modes), constraints, modes or {})
 
+    @classmethod
+    def of(
+        cls, model: Model, modes: ContactModes | None = None, *, with_laws: bool = False, begun_as: System | None = None
+    ) -> System:
+        """Motion, loads and constraints of a model, dependent coordinates eliminated.
 
-def system_of(
-    model: Model, modes: ContactModes | None = None, *, with_laws: bool = False, begun_as: System | None = None
-) -> System:
-    """Motion, loads and constraints of a model, dependent coordinates eliminated.
-
-    Args:
-        modes: how contacts are that can end, slide or stick, by constraint.
-        begun_as: the system of the same start whose model this one was, before something in it was let go: what stands
-            as it did at the start stands as it does there.
-        with_laws: for print: long rates and accelerations of driven coordinates are names (`Scope.laws`).
-    Raises:
-        NotYet: a kind of joint, force or constraint that this version does not derive.
-        DerivationError: what the model says cannot be derived.
-    """
-    free = System.free_of(model, modes, with_laws=with_laws, begun_as=begun_as)
-    return free.reduced() if free.scope.dependent or model.speeds else free
+        Args:
+            modes: how contacts are that can end, slide or stick, by constraint.
+            begun_as: the system of the same start whose model this one was, before something in it was let go: what
+                stands as it did at the start stands as it does there.
+            with_laws: for print: long rates and accelerations of driven coordinates are names (`Scope.laws`).
+        Raises:
+            NotYet: a kind of joint, force or constraint that this version does not derive.
+            DerivationError: what the model says cannot be derived.
+        """
+        free = System.free_of(model, modes, with_laws=with_laws, begun_as=begun_as)
+        return free.reduced() if free.scope.dependent or model.speeds else free
 
 
 def _refuse_loops(scope: Scope) -> None:

@@ -9,9 +9,6 @@ from eomgen.mechanics.equilibrium.equations import over_rates as over_rates
 # The system of `over_rates`, with everything that moves with t held where it is at t = 0
 from eomgen.mechanics.equilibrium.equations import standing_system as standing_system
 
-# The equations of the system at rest, its drives held
-from eomgen.mechanics.equilibrium.equations import static_equations as static_equations
-
 # Every equilibrium that is found
 from eomgen.mechanics.equilibrium.places import places_of_rest as places_of_rest
 from eomgen.mechanics.equilibrium.reactions import ReactionsOrWhy as ReactionsOrWhy
@@ -33,12 +30,6 @@ from eomgen.mechanics.equilibrium.search import Equilibria as Equilibria
 
 # One equilibrium
 from eomgen.mechanics.equilibrium.search import Equilibrium as Equilibrium
-
-# Every equilibrium that is found, the nearest to the guess first, with the statement if there may be others
-from eomgen.mechanics.equilibrium.search import all_equilibria as all_equilibria
-
-# The place at which static equations hold that is nearest to a guess (None: to the start)
-from eomgen.mechanics.equilibrium.search import nearest_equilibrium as nearest_equilibrium
 
 # Verdict on the stability of an equilibrium, with its reason
 from eomgen.mechanics.equilibrium.stability import Stability as Stability

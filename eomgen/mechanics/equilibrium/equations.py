@@ -205,50 +205,50 @@ class StaticEquations:
         for share in (-tolerances.BESIDE_A_PLACE, 0.7 * tolerances.BESIDE_A_PLACE):
             yield {**state, **{q: state[q] + share * max(1, abs(state[q])) for q in self.q}}
 
+    @classmethod
+    def of(cls, system: System) -> StaticEquations:
+        """The equations of the system at rest, its drives held.
 
-def static_equations(system: System) -> StaticEquations:
-    """The equations of the system at rest, its drives held.
-
-    Raises:
-        DerivationError: dry friction, with which rest is possible in many places; a drive that turns steadily; a
-            velocity constraint that no place satisfies at rest.
-    """
-    _refuse_dry_friction(system)
-    system, held = system.with_drives_held()
-    free = system.free or system
-    scope = free.scope
-    driven = [q for q in scope.symbols.q if scope.model.coordinates[q.name].driven]
-    q = tuple(x for x in scope.symbols.q if x not in driven)
-    given = _given(free, driven)
-    z = free.symbols.z
-    rows = [(*readable_all(substituted(row, given), Work.FORMULA), *(0 for _ in z)) for row in free.constraints.J]
-    standing = standing_system(free)  # a damper at a seat that moves with t has no force at rest
-    loads = (standing.free or standing).loads
-    forces = loads.generalized_forces
-    _refuse_signs_of_rates(forces, free)
-    rates = _rates_at_rest(standing.free or standing, given)
-    Q = (*_at_rest(forces, given, free), *rates)
-    unbalanced = (*substituted(loads.powered_forces, given), *rates)
-    phi = _relations(system, given, q)
-    sigma = _left_at_rest(free, given, q)
-    Q, unbalanced, phi, sigma = (
-        readable_all(x, Work.FORMULA, most=MOST_TERMS) if x else () for x in (Q, unbalanced, phi, sigma)
-    )
-    lam = free.symbols.lam
-    kept = [i for i, row in enumerate(rows) if not all(map(is_zero, row))]
-    statics = StaticEquations(
-        system,
-        held,
-        (*q, *z),
-        given,
-        Q,
-        unbalanced,
-        tuple(rows[i] for i in kept),
-        tuple(lam[i] for i in kept),
-        tuple(x for x in phi if not is_zero(x)),
-        tuple(x for x in sigma if not is_zero(x)),
-    )
-    return with_norms(statics)
+        Raises:
+            DerivationError: dry friction, with which rest is possible in many places; a drive that turns steadily; a
+                velocity constraint that no place satisfies at rest.
+        """
+        _refuse_dry_friction(system)
+        system, held = system.with_drives_held()
+        free = system.free or system
+        scope = free.scope
+        driven = [q for q in scope.symbols.q if scope.model.coordinates[q.name].driven]
+        q = tuple(x for x in scope.symbols.q if x not in driven)
+        given = _given(free, driven)
+        z = free.symbols.z
+        rows = [(*readable_all(substituted(row, given), Work.FORMULA), *(0 for _ in z)) for row in free.constraints.J]
+        standing = standing_system(free)  # a damper at a seat that moves with t has no force at rest
+        loads = (standing.free or standing).loads
+        forces = loads.generalized_forces
+        _refuse_signs_of_rates(forces, free)
+        rates = _rates_at_rest(standing.free or standing, given)
+        Q = (*_at_rest(forces, given, free), *rates)
+        unbalanced = (*substituted(loads.powered_forces, given), *rates)
+        phi = _relations(system, given, q)
+        sigma = _left_at_rest(free, given, q)
+        Q, unbalanced, phi, sigma = (
+            readable_all(x, Work.FORMULA, most=MOST_TERMS) if x else () for x in (Q, unbalanced, phi, sigma)
+        )
+        lam = free.symbols.lam
+        kept = [i for i, row in enumerate(rows) if not all(map(is_zero, row))]
+        statics = cls(
+            system,
+            held,
+            (*q, *z),
+            given,
+            Q,
+            unbalanced,
+            tuple(rows[i] for i in kept),
+            tuple(lam[i] for i in kept),
+            tuple(x for x in phi if not is_zero(x)),
+            tuple(x for x in sigma if not is_zero(x)),
+        )
+        return with_norms(statics)
 
 
 def with_norms(statics: StaticEquations) -> StaticEquations:

@@ -9,9 +9,9 @@ from random import Random
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.equilibrium.equations import StaticEquations, standing_system, static_equations
+from eomgen.mechanics.equilibrium.equations import StaticEquations, standing_system
 from eomgen.mechanics.equilibrium.search import Equilibrium
-from eomgen.mechanics.free_bodies import Indeterminate, NamedReaction, Reactions, named_reactions
+from eomgen.mechanics.free_bodies import Indeterminate, NamedReaction, Reactions
 from eomgen.mechanics.start import values_where_at_rest
 from eomgen.symbolic.exact import LinearSystem, Solution, readable_all, simplest, vanishes
 from eomgen.symbolic.expression import Fraction, Node, Scalar, depends_on, is_zero, jacobian, substituted
@@ -60,7 +60,7 @@ def reactions_at(place: Equilibrium) -> tuple[Reactions, tuple[RestingReaction, 
     reactions = Reactions.of(system, state, work=Work.ANSWER if place.is_exact else Work.PART)
     positive = system.scope.positive
     found = []
-    for named in named_reactions(reactions.balance):
+    for named in NamedReaction.all_of(reactions.balance):
         *factors, given = substituted((*named.combination.values(), named.given), state)
         try:
             sum_ = reactions.combined(dict(zip(named.combination, factors, strict=True)), named.name)
@@ -112,7 +112,7 @@ def holding_of(system: System) -> Holding:
         DerivationError: no unknown of the loads does work; they are not determined, or cannot hold it; the start has no
             closed form.
     """
-    statics = static_equations(system)
+    statics = StaticEquations.of(system)
     if not statics.loaded:
         raise DerivationError(
             "no unknown load does work when the system moves: none can hold it",

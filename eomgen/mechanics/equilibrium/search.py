@@ -13,7 +13,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import Closure, Constraints, rows_of_constraint
+from eomgen.mechanics.constraints import Closure, Constraints, Row
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.equilibrium.coordinates_at_rest import Chosen, chosen_coordinates, holds_velocities, unheld
 from eomgen.mechanics.equilibrium.equations import StaticEquations
@@ -94,6 +94,16 @@ class Equilibrium:
             fix = "start where it touches, or hold the system on this side of it"
         raise DerivationError(what, f"constraints.{name}", fix)
 
+    @staticmethod
+    def nearest(statics: StaticEquations, guess: Mapping[str, float] | None = None) -> Equilibrium:
+        """The place at which static equations hold that is nearest to a guess (None: to the start).
+
+        Raises:
+            UsageError: a name in the guess that is no coordinate.
+            DerivationError: there is none; the forces hold an unknown.
+        """
+        return _search(statics, guess).nearest()
+
 
 @dataclass(frozen=True)
 class Equilibria:
@@ -125,6 +135,17 @@ class Equilibria:
             raise nowhere(self.complete, self.statics.system.constraints)
         return self.found[0]
 
+    @staticmethod
+    def of(statics: StaticEquations) -> Equilibria:
+        """Every place that is found at which static equations hold, the nearest to the start first; it says if all are.
+
+        Those that a one-sided contact does not hold, or does not let the system reach, come last.
+
+        Raises:
+            DerivationError: the forces hold an unknown; dry friction; a drive that turns steadily.
+        """
+        return _search(statics, None).equilibria()
+
 
 NO_PLACE = "no place was found at which all forces balance"
 MOST_NAMED = 4  # coordinates
@@ -148,27 +169,6 @@ def nowhere(complete: bool, constraints: Constraints) -> DerivationError:
     what = f"{NO_PLACE}{along}{': there is none' if complete else ''}"
     fix = "hold what nothing balances by a spring or a constraint, or give a first guess by `near`"
     return DerivationError(what, "coordinates", fix)
-
-
-def all_equilibria(statics: StaticEquations) -> Equilibria:
-    """Every place that is found at which static equations hold, the nearest to the start first; it says if all are.
-
-    Those that a one-sided contact does not hold, or does not let the system reach, come last.
-
-    Raises:
-        DerivationError: the forces hold an unknown; dry friction; a drive that turns steadily.
-    """
-    return _search(statics, None).equilibria()
-
-
-def nearest_equilibrium(statics: StaticEquations, guess: Mapping[str, float] | None = None) -> Equilibrium:
-    """The place at which static equations hold that is nearest to a guess (None: to the start).
-
-    Raises:
-        UsageError: a name in the guess that is no coordinate.
-        DerivationError: there is none; the forces hold an unknown.
-    """
-    return _search(statics, guess).nearest()
 
 
 def _search(statics: StaticEquations, guess: Mapping[str, float] | None) -> _Search:
@@ -434,7 +434,7 @@ def passed_contacts(system: System, numbers: Mapping[Node, float]) -> tuple[str,
         numbers: of the coordinates.
     """
     open_ = [name for name, mode in system.modes.items() if not mode.closed]
-    gaps = {name: rows_of_constraint(system.motion, name)[0].gap for name in open_}
+    gaps = {name: Row.of_constraint(system.motion, name)[0].gap for name in open_}
     known = {node: float(x) for node, x in system.scope.values_of_parameters(None).items()}
     known |= {system.symbols.t: 0.0, **numbers}
     sought = {name: gap for name, gap in gaps.items() if gap is not None and known.keys() >= {*symbols_of((gap,))}}

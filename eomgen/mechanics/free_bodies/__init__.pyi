@@ -6,17 +6,11 @@ from eomgen.mechanics.free_bodies.balance import Balance as Balance
 # One scalar equation of one body: sum of coefficients * reactions + applied = inertia
 from eomgen.mechanics.free_bodies.balance import BodyEquation as BodyEquation
 
-# Refuse loads that act at no place, or on a point that a coordinate moves in its body: a balance would lack them
-from eomgen.mechanics.free_bodies.balance import refuse_placeless as refuse_placeless
-
 # A force, or a couple, on a body
 from eomgen.mechanics.free_bodies.cut import CutForce as CutForce
 
 # Kinds of what acts on a body that is cut free
 from eomgen.mechanics.free_bodies.cut import ForceKind as ForceKind
-
-# All that acts on each body
-from eomgen.mechanics.free_bodies.cut import forces_on_bodies as forces_on_bodies
 
 # Description of what is out of balance at a state; "" where nothing is. Reactions left open take random values
 from eomgen.mechanics.free_bodies.equilibrium import imbalance as imbalance
@@ -47,9 +41,6 @@ from eomgen.mechanics.free_bodies.inverse import by_independent as by_independen
 
 # sum of combination * components + given
 from eomgen.mechanics.free_bodies.names_of_reactions import NamedReaction as NamedReaction
-
-# Every reaction by its name, in the order of the components
-from eomgen.mechanics.free_bodies.names_of_reactions import named_reactions as named_reactions
 
 # All reactions of a system
 from eomgen.mechanics.free_bodies.reactions import Reactions as Reactions
@@ -83,9 +74,3 @@ from eomgen.mechanics.free_bodies.wrenches import Component as Component
 
 # Force and couple of a unit of a reaction on one body, at a place, in the axes of the body's equations
 from eomgen.mechanics.free_bodies.wrenches import Effect as Effect
-
-# Effects of drive, spring, damper and rotor of a body's joint, on the body first; () for a constraint
-from eomgen.mechanics.free_bodies.wrenches import efforts_of as efforts_of
-
-# Effects of drives, springs, dampers and rotors of all joints, on both bodies of each
-from eomgen.mechanics.free_bodies.wrenches import joint_effects as joint_effects

@@ -10,13 +10,7 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Closure, holds_identically
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies.wrenches import (
-    Axes,
-    Component,
-    joint_effects,
-    placements_of,
-    seen_by_carriers,
-)
+from eomgen.mechanics.free_bodies.wrenches import Axes, Component, Effect, placements_of, seen_by_carriers
 from eomgen.mechanics.kinematics import GROUND, BodyLink, SystemInertia
 from eomgen.model import PointForce
 from eomgen.symbolic.exact import Solution, readable_all
@@ -126,9 +120,22 @@ class Balance:
         found: Balance = system.found[Balance.of]
         return found
 
+    @staticmethod
+    def refuse_placeless(system: System) -> None:
+        """Refuse loads at no place, or on a point that a coordinate moves in its body: a balance would lack them.
+
+        Raises:
+            DerivationError: it is named.
+        """
+        _refuse_placeless_forces(system)
+        _refuse_placeless_constraints(system)
+        for link in system.motion.links:
+            if _seat_moves_others(system, link):
+                raise _moved_inside(f"the joint of body '{link.name}'", f"bodies.{link.name}.joint")
+
 
 def _balance(system: System, sizes: Mapping[str, Scalar]) -> Balance:
-    refuse_placeless(system)
+    Balance.refuse_placeless(system)
     axes = Axes(system.motion)
     components = axes.components_of(system)
     components += placements_of(system, axes, components)
@@ -140,19 +147,6 @@ def _balance(system: System, sizes: Mapping[str, Scalar]) -> Balance:
             if row or not (is_zero(applied[i][d]) and is_zero(inertia[i][d])):
                 equations.append(BodyEquation(link.name, d, row, applied[i][d], inertia[i][d]))
     return Balance(system, components, tuple(equations), sizes)
-
-
-def refuse_placeless(system: System) -> None:
-    """Refuse loads that act at no place, or on a point that a coordinate moves in its body: a balance would lack them.
-
-    Raises:
-        DerivationError: it is named.
-    """
-    _refuse_placeless_forces(system)
-    _refuse_placeless_constraints(system)
-    for link in system.motion.links:
-        if _seat_moves_others(system, link):
-            raise _moved_inside(f"the joint of body '{link.name}'", f"bodies.{link.name}.joint")
 
 
 def _refuse_placeless_forces(system: System) -> None:
@@ -302,7 +296,7 @@ def _applied(system: System, axes: Axes) -> list[tuple[Scalar, ...]]:
     """(force, moment about the mass centre) of everything given, on every body."""
     totals: list[tuple[Scalar, ...]] = [(0,) * 6 for _ in axes.motion.links]
     effects = [e for load in (*system.loads.placed, *system.loads.weights) for e in axes.effects_of(load)]
-    for effect in (*effects, *joint_effects(system)):
+    for effect in (*effects, *Effect.of_joints(system)):
         totals[effect.link] = tuple(a + b for a, b in zip(totals[effect.link], effect.six, strict=True))
     return totals
 

@@ -16,14 +16,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies.balance import Balance
 from eomgen.mechanics.free_bodies.names_of_reactions import is_named_alone
-from eomgen.mechanics.free_bodies.wrenches import (
-    Axes,
-    Component,
-    Effect,
-    effects_at_joint,
-    efforts_of,
-    rotors_of,
-)
+from eomgen.mechanics.free_bodies.wrenches import Axes, Component, Effect, effects_at_joint, rotors_of
 from eomgen.mechanics.kinematics import BodyLink, JointEffort, pushed_along
 from eomgen.model import Couple, Element, PointForce, UniformField
 from eomgen.symbolic.expression import Matrix, Scalar, Vector, is_zero, substituted
@@ -66,11 +59,11 @@ class CutForce:
     has_sense: bool = False
     spread: bool = False
 
-
-def forces_on_bodies(balance: Balance) -> tuple[CutForce, ...]:
-    """All that acts on each body: weights, loads, springs, dampers, drives, reactions, inertia; in this order."""
-    found = [*_weights(balance.system), *_loads(balance.system), *_efforts(balance), *_reactions(balance)]
-    return (*found, *_inertia(balance))
+    @staticmethod
+    def on_bodies(balance: Balance) -> tuple[CutForce, ...]:
+        """All that acts on each body: weights, loads, springs, dampers, drives, reactions, inertia; in this order."""
+        found = [*_weights(balance.system), *_loads(balance.system), *_efforts(balance), *_reactions(balance)]
+        return (*found, *_inertia(balance))
 
 
 # -- loads -----------------------------------------------------------------------------------------
@@ -246,7 +239,7 @@ def _at_rims(axes: Axes, effects: tuple[Effect, ...]) -> tuple[Effect, ...]:
 def _of_whole(balance: Balance, owner: str, mine: Mapping[int, Component]) -> Iterator[CutForce]:
     """Force and couple of an owner on each body that it touches, along the ground's axes."""
     axes = Axes(balance.system.motion)
-    efforts = efforts_of(balance.system, owner)
+    efforts = Effect.of_joint(balance.system, owner)
     effects = [(j, e) for j, c in mine.items() for e in (*c.effects, *c.friction_effects)]
     first = next(e.link for j, e in effects if mine[j].kind != "drive")
     sides = {axes.motion.index[c.side]: c.side for c in mine.values() if c.side and c.side in axes.motion.index}

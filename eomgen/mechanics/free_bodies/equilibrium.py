@@ -23,7 +23,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies.balance import DIRECTIONS, Balance
 from eomgen.mechanics.free_bodies.reactions import Reactions
-from eomgen.mechanics.free_bodies.wrenches import PLANE_ROWS, SPACE_ROWS, Axes, Component, Effect, joint_effects
+from eomgen.mechanics.free_bodies.wrenches import PLANE_ROWS, SPACE_ROWS, Axes, Component, Effect
 from eomgen.mechanics.kinematics import GROUND
 from eomgen.model import Couple, MassProperties, PointForce
 from eomgen.symbolic.exact import equal
@@ -191,7 +191,7 @@ def _applied(wrenches: _Wrenches) -> np.ndarray:
     for load in (*system.loads.placed, *system.loads.weights):
         vectors += _about_origin(system, load)
     given = numbers.array(tuple(vectors)).reshape(-1, 6).sum(axis=0)
-    return np.asarray(given + wrenches.of_effects(joint_effects(system)).sum(axis=0))
+    return np.asarray(given + wrenches.of_effects(Effect.of_joints(system)).sum(axis=0))
 
 
 def _about_origin(system: System, load: PointForce | Couple) -> list[Scalar]:

@@ -25,10 +25,10 @@ from eomgen.mechanics.constraints import (
     Row,
     holds_identically,
 )
-from eomgen.mechanics.dynamics import EquationsOfMotion, System, assembled_by_recursion, inverse_residual, system_of
+from eomgen.mechanics.dynamics import EquationsOfMotion, System, assembled_by_recursion, inverse_residual
 from eomgen.mechanics.free_bodies.friction import SystemFriction
 from eomgen.mechanics.free_bodies.reactions import Reactions
-from eomgen.mechanics.start import begun_state
+from eomgen.mechanics.start import Start
 from eomgen.mechanics.state import Numbers, Split
 from eomgen.model import Table, nearest
 from eomgen.symbolic.exact import cramer
@@ -250,7 +250,7 @@ class DrivingForces:
                 ),
             )
             over_all = self.system.free is None and self.system.scope.dependent
-            self.system.found[key] = (System.free_of if over_all else system_of)(
+            self.system.found[key] = (System.free_of if over_all else System.of)(
                 model, self.system.modes, begun_as=self.system
             )
         free: System = self.system.found[key]
@@ -426,7 +426,7 @@ def _dependent(system: System, J: Sequence[Sequence[Scalar]]) -> list[int]:
 def _states(system: System) -> Iterator[State]:
     """The start where it has values, then a configuration that is not special."""
     with suppress(DerivationError, ModelError):
-        yield begun_state(system)
+        yield Start.begun(system)
     yield Closure(system.constraints).generic()
 
 

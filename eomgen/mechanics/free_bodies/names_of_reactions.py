@@ -13,7 +13,7 @@ from dataclasses import replace
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Row, holds_identically
 from eomgen.mechanics.free_bodies.balance import Balance
-from eomgen.mechanics.free_bodies.wrenches import COUPLE, FORCE, Axes, Component, Effect, efforts_of
+from eomgen.mechanics.free_bodies.wrenches import COUPLE, FORCE, Axes, Component, Effect
 from eomgen.mechanics.kinematics import BodyLink, Motion
 from eomgen.model import PointForce
 from eomgen.symbolic.expression import Node, Scalar, Vector, depends_on, derivative, is_zero
@@ -42,12 +42,12 @@ class NamedReaction:
     combination: dict[int, Scalar]
     given: Scalar = 0
 
-
-def named_reactions(balance: Balance) -> tuple[NamedReaction, ...]:
-    """Every reaction by its name, in the order of the components."""
-    owners = dict.fromkeys(c.owner for c in balance.components)
-    found = [named for owner in owners for named in _of_owner(balance, owner)]
-    return (*found, *_of_sliding_joints(balance, {named.name for named in found}))
+    @staticmethod
+    def all_of(balance: Balance) -> tuple[NamedReaction, ...]:
+        """Every reaction by its name, in the order of the components."""
+        owners = dict.fromkeys(c.owner for c in balance.components)
+        found = [named for owner in owners for named in _of_owner(balance, owner)]
+        return (*found, *_of_sliding_joints(balance, {named.name for named in found}))
 
 
 def _of_sliding_joints(balance: Balance, found: Container[str]) -> Iterator[NamedReaction]:
@@ -105,7 +105,7 @@ def _vector(
     mine = [(j, c) for j, c in enumerate(balance.components) if c.owner == owner]
     on = motion.index[side] if side else next(c for _, c in mine if c.kind != "drive").effects[0].link
     units = {j: _turned(balance, on, _sum(part, on, (*c.effects, *c.friction_effects))) for j, c in mine}
-    efforts = efforts_of(balance.system, owner) if owner in motion.index else []
+    efforts = Effect.of_joint(balance.system, owner) if owner in motion.index else []
     given = _turned(balance, on, _sum(part, on, efforts))
     place = f"{owner}.{side}" if side else owner
     for k in along:

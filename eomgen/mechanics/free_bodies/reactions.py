@@ -26,7 +26,7 @@ from eomgen.mechanics.free_bodies.balance import (
     unbalanced,
 )
 from eomgen.mechanics.free_bodies.friction import SystemFriction
-from eomgen.mechanics.free_bodies.names_of_reactions import named_reactions
+from eomgen.mechanics.free_bodies.names_of_reactions import NamedReaction
 from eomgen.mechanics.free_bodies.solution import (
     SURE,
     Combination,
@@ -35,7 +35,7 @@ from eomgen.mechanics.free_bodies.solution import (
     solution_of_balance,
 )
 from eomgen.mechanics.free_bodies.structure import Structure
-from eomgen.mechanics.free_bodies.wrenches import Component, Effect, efforts_of, normals_of_joint
+from eomgen.mechanics.free_bodies.wrenches import Component, Effect, normals_of_joint
 from eomgen.mechanics.kinematics import Motion
 from eomgen.mechanics.start import values_where_at_rest
 from eomgen.mechanics.state import Numbers
@@ -207,7 +207,7 @@ class Reactions:
         if self.is_open(owner):
             return 0
         name = f"reaction_{along}({owner})"
-        for named in named_reactions(self.balance):
+        for named in NamedReaction.all_of(self.balance):
             if named.name == name:
                 return self.combined(
                     {j: self._replaced(Vector((k, 0, 0)))[0] for j, k in named.combination.items()}, name
@@ -224,7 +224,7 @@ class Reactions:
         Raises:
             DerivationError: the joint has none; it is indeterminate.
         """
-        for named in named_reactions(self.balance):
+        for named in NamedReaction.all_of(self.balance):
             if named.name == f"friction({joint})":
                 given = self._replaced(Vector((named.given, 0, 0)))[0]
                 total: Scalar = given + self.combined(named.combination, named.name)
@@ -297,7 +297,7 @@ class Reactions:
         """Force or couple on one body as combinations of the owner's components, and what its drive and spring add."""
         motion = self.balance.system.motion
         mine = {j: c for j, c in enumerate(self.components) if c.owner == owner}
-        efforts = efforts_of(self.balance.system, owner)
+        efforts = Effect.of_joint(self.balance.system, owner)
         if not mine and not efforts:
             driven = next(
                 (q for q, constraints in motion.scope.model.driving_constraints.items() if owner in constraints), ""
@@ -381,7 +381,7 @@ class Reactions:
     def determinate(self) -> dict[str, Scalar]:
         """{name as in an output: value in q, u and the accelerations}; without those that have no single value."""
         found: dict[str, Scalar] = {}
-        for named in named_reactions(self.balance):
+        for named in NamedReaction.all_of(self.balance):
             try:
                 found[named.name] = self.combined(named.combination, named.name) + named.given
             except Indeterminate:

@@ -15,7 +15,7 @@ from eomgen.mechanics.free_bodies.velocity_plan import (
     MOST_MOTIONS,
     VelocityPlan,
 )
-from eomgen.mechanics.free_bodies.wrenches import Axes, Component, Effect, joint_effects
+from eomgen.mechanics.free_bodies.wrenches import Axes, Component, Effect
 from eomgen.mechanics.start import values_where_at_rest
 from eomgen.model import BodyPoint, Constraint, declared_at
 from eomgen.symbolic.exact import LinearSystem, Pivots, Solution, readable_all
@@ -89,7 +89,7 @@ class Structure:
         """(owner, effects of a unit) of every row; of an unknown of the loads its derivative, on the bodies."""
         axes = Axes(self.system.motion)
         given = [e for load in self.system.loads.placed for e in axes.effects_of(load)]
-        given += joint_effects(self.system)
+        given += Effect.of_joints(self.system)
         own = [(component.owner, component.effects) for component in self.components]
         return (*own, *((p.name, tuple(filter(None, (_slope_of(e, p) for e in given)))) for p in self.unknowns))
 

@@ -71,6 +71,20 @@ class Effect:
         """k units of it."""
         return Effect(self.link, k * self.force, k * self.couple, self.arm, self.place, self.beyond)
 
+    @staticmethod
+    def of_joint(system: System, body: str) -> list[Effect]:
+        """Effects of drive, spring, damper and rotor of a body's joint, on the body first; () for a constraint."""
+        if body not in system.motion.index:
+            return []
+        axes = Axes(system.motion)
+        effects = [e for effort in system.loads.efforts if effort.body == body for e in _effort_effects(axes, effort)]
+        return [*effects, *rotors_of(axes, axes.motion.link(body))]
+
+    @staticmethod
+    def of_joints(system: System) -> list[Effect]:
+        """Effects of drives, springs, dampers and rotors of all joints, on both bodies of each."""
+        return [effect for link in system.motion.links for effect in Effect.of_joint(system, link.name)]
+
 
 @dataclass(frozen=True)
 class Axes:
@@ -136,20 +150,6 @@ def effects_at_joint(axes: Axes, link: BodyLink, force: Vector, couple: Vector) 
         f, n = -(to_parent @ force), -(to_parent @ couple)
         effects.append(Effect(link.parent, f, n, axes.arm(link.parent, link.local.p), link.local.p))
     return effects
-
-
-def joint_effects(system: System) -> list[Effect]:
-    """Effects of drives, springs, dampers and rotors of all joints, on both bodies of each."""
-    return [effect for link in system.motion.links for effect in efforts_of(system, link.name)]
-
-
-def efforts_of(system: System, body: str) -> list[Effect]:
-    """Effects of drive, spring, damper and rotor of a body's joint, on the body first; () for a constraint."""
-    if body not in system.motion.index:
-        return []
-    axes = Axes(system.motion)
-    effects = [e for effort in system.loads.efforts if effort.body == body for e in _effort_effects(axes, effort)]
-    return [*effects, *rotors_of(axes, axes.motion.link(body))]
 
 
 def rotors_of(axes: Axes, link: BodyLink) -> list[Effect]:

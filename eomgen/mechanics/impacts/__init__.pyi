@@ -3,9 +3,6 @@
 # The jump where contacts close as equations, with its impulses, speeds and loss
 from eomgen.mechanics.impacts.equations import ImpactEquations as ImpactEquations
 
-# The equations of the impact in which contacts close
-from eomgen.mechanics.impacts.equations import impact_equations as impact_equations
-
 # One contact that touches in an impact: its rows, its restitution
 from eomgen.mechanics.impacts.law import Hit as Hit
 
@@ -14,6 +11,3 @@ from eomgen.mechanics.impacts.law import ImpactLaw as ImpactLaw
 
 # What an impact changes: the speeds after it, its impulses, the kinetic energy lost
 from eomgen.mechanics.impacts.law import Jump as Jump
-
-# The jump of the speeds by the impulses of all contacts that touch
-from eomgen.mechanics.impacts.law import jump as jump

@@ -13,8 +13,8 @@ from functools import cached_property
 
 from eomgen.errors import DerivationError, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import Rank, Row, holds_identically, rows_of_constraint
-from eomgen.mechanics.dynamics import System, assembled_by_recursion, system_of
+from eomgen.mechanics.constraints import Rank, Row, holds_identically
+from eomgen.mechanics.dynamics import System, assembled_by_recursion
 from eomgen.mechanics.free_bodies import Reactions
 from eomgen.mechanics.kinematics import ContactMode, SystemInertia
 from eomgen.model import Contact, Model
@@ -168,7 +168,7 @@ class ImpactEquations:
             DerivationError: with the contacts closed the model has other speeds; there is no such reaction.
         """
         away = {name: mode for name, mode in self.system.modes.items() if name not in self.touching}
-        closed = system_of(self.system.scope.model, away)
+        closed = System.of(self.system.scope.model, away)
         symbols = closed.symbols
         if [x.name for x in symbols.u] != [x.name for x in self.u]:
             what = f"the impulse of '{owner}' does not follow: in contact the model has other speeds"
@@ -194,46 +194,46 @@ class ImpactEquations:
     def _is_driven(self) -> bool:
         return bool(self.system.scope.model.driven_coordinates)
 
+    @classmethod
+    def of(cls, model: Model, contacts: Sequence[str] = (), closed: Sequence[str] = ()) -> ImpactEquations:
+        """The equations of the impact in which contacts close.
+
+        Args:
+            contacts: what closes; (): the one contact that can end.
+            closed: contacts that are closed already, and stay so.
+        Raises:
+            UsageError: no such contact, or none is named and there are several.
+            DerivationError: the coordinates cannot leave a contact, or friction has a part in the impact.
+        """
+        ending = {contact.name: contact for contact in model.contacts if contact.unilateral}
+        names = _named(ending, contacts)
+        for name in names:
+            _refuse_friction(model, ending[name])
+        if len(names) > 1 and model.impact is not None and model.impact.order == "sequential":
+            what = "contacts that are hit one after the other have no one set of equations"
+            raise DerivationError(what, "impact", f"name one: --impact {names[0]}")
+        system = System.of(model, dict.fromkeys(ending, OPEN))
+        staying = [name for name in closed if name in ending and name not in names]
+        own = {name: Row.of_constraint(system.motion, name) for name in (*names, *staying)}
+        symbol = system.symbols.u[0].graph.symbol
+        found = []
+        for name, rows in own.items():
+            for k, row in enumerate(rows):
+                e = system.scope.value(ending[name].restitution) if ending[name].restitution is not None else 0
+                label = name if k == 0 else f"{name} {row.component}"
+                found.append(_row(system, row, label, e if name in names and k == 0 else None))
+        redundant = {(row.constraint, row.number) for row in Rank(system.constraints).redundant()}
+        several = [row.constraint for row in system.constraints.rows]
+        for row in system.constraints.closing:
+            if (row.constraint, row.number) not in redundant:
+                alone = several.count(row.constraint) == 1 or not row.component
+                found.append(_row(system, row, row.constraint if alone else f"{row.constraint} {row.component}", None))
+        after = tuple(symbol(_after(u.name)) for u in system.symbols.u)
+        return cls(system, names, tuple(found), after)
+
 
 def _entries(row: ScalarRow) -> dict[int, Scalar]:
     return {k: x for k, x in enumerate(row) if not is_zero(x)}
-
-
-def impact_equations(model: Model, contacts: Sequence[str] = (), closed: Sequence[str] = ()) -> ImpactEquations:
-    """The equations of the impact in which contacts close.
-
-    Args:
-        contacts: what closes; (): the one contact that can end.
-        closed: contacts that are closed already, and stay so.
-    Raises:
-        UsageError: no such contact, or none is named and there are several.
-        DerivationError: the coordinates cannot leave a contact, or friction has a part in the impact.
-    """
-    ending = {contact.name: contact for contact in model.contacts if contact.unilateral}
-    names = _named(ending, contacts)
-    for name in names:
-        _refuse_friction(model, ending[name])
-    if len(names) > 1 and model.impact is not None and model.impact.order == "sequential":
-        what = "contacts that are hit one after the other have no one set of equations"
-        raise DerivationError(what, "impact", f"name one: --impact {names[0]}")
-    system = system_of(model, dict.fromkeys(ending, OPEN))
-    staying = [name for name in closed if name in ending and name not in names]
-    own = {name: rows_of_constraint(system.motion, name) for name in (*names, *staying)}
-    symbol = system.symbols.u[0].graph.symbol
-    found = []
-    for name, rows in own.items():
-        for k, row in enumerate(rows):
-            e = system.scope.value(ending[name].restitution) if ending[name].restitution is not None else 0
-            label = name if k == 0 else f"{name} {row.component}"
-            found.append(_row(system, row, label, e if name in names and k == 0 else None))
-    redundant = {(row.constraint, row.number) for row in Rank(system.constraints).redundant()}
-    several = [row.constraint for row in system.constraints.rows]
-    for row in system.constraints.closing:
-        if (row.constraint, row.number) not in redundant:
-            alone = several.count(row.constraint) == 1 or not row.component
-            found.append(_row(system, row, row.constraint if alone else f"{row.constraint} {row.component}", None))
-    after = tuple(symbol(_after(u.name)) for u in system.symbols.u)
-    return ImpactEquations(system, names, tuple(found), after)
 
 
 def _named(ending: Mapping[str, Contact], contacts: Sequence[str]) -> tuple[str, ...]:

@@ -71,6 +71,33 @@ class Jump:
     held: np.ndarray = field(default_factory=lambda: np.zeros(0))
     friction: dict[str, float] = field(default_factory=dict)
 
+    @staticmethod
+    def of(
+        M: np.ndarray, held: np.ndarray, touching: Sequence[Hit], u: np.ndarray, law: ImpactLaw | None = None
+    ) -> Jump:
+        """Speeds after the impact of the contacts that touch, and the impulses.
+
+        Args:
+            held: (J, sigma) of the constraints, k x (n + 1).
+            law: None: Newton's, all at once.
+        Raises:
+            DerivationError: no impulses satisfy the law, or it says nothing on this.
+        """
+        law = law or ImpactLaw()
+        if law.order == SEQUENTIAL:
+            return _one_by_one(M, held, touching, u, law.law)
+        if any(hit.mu and not hit.rests for hit in touching):
+            return _rough(M, held, touching, u, law.law)
+        if law.law == NEWTON or sum(not hit.rests for hit in touching) < 2:
+            return _at_once(M, held, touching, u)
+        if law.law == ENERGETIC:
+            raise DerivationError(
+                f"the energetic law is one of single contacts, and {_names(touching)} touch at once",
+                "impact",
+                'law = "newton" or "poisson", or order = "sequential"',
+            )
+        return _compressed(M, held, touching, u)
+
 
 NEWTON, POISSON, ENERGETIC = "newton", "poisson", "energetic"
 SIMULTANEOUS, SEQUENTIAL = "simultaneous", "sequential"
@@ -94,31 +121,6 @@ class ImpactLaw:
         """The declared law; where none is, Newton's, and of contacts with friction Poisson's."""
         usual = POISSON if rough else NEWTON
         return ImpactLaw(usual) if rules is None else ImpactLaw(rules.law or usual, rules.order)
-
-
-def jump(M: np.ndarray, held: np.ndarray, touching: Sequence[Hit], u: np.ndarray, law: ImpactLaw | None = None) -> Jump:
-    """Speeds after the impact of the contacts that touch, and the impulses.
-
-    Args:
-        held: (J, sigma) of the constraints, k x (n + 1).
-        law: None: Newton's, all at once.
-    Raises:
-        DerivationError: no impulses satisfy the law, or it says nothing on this.
-    """
-    law = law or ImpactLaw()
-    if law.order == SEQUENTIAL:
-        return _one_by_one(M, held, touching, u, law.law)
-    if any(hit.mu and not hit.rests for hit in touching):
-        return _rough(M, held, touching, u, law.law)
-    if law.law == NEWTON or sum(not hit.rests for hit in touching) < 2:
-        return _at_once(M, held, touching, u)
-    if law.law == ENERGETIC:
-        raise DerivationError(
-            f"the energetic law is one of single contacts, and {_names(touching)} touch at once",
-            "impact",
-            'law = "newton" or "poisson", or order = "sequential"',
-        )
-    return _compressed(M, held, touching, u)
 
 
 def _names(touching: Sequence[Hit]) -> str:
@@ -177,7 +179,7 @@ def _sequence(M: np.ndarray, held: np.ndarray, touching: Sequence[Hit], u: np.nd
             return Jump(now, impulses, of_held, friction)
         equal = [h for h, v in zip(others, speeds, strict=True) if v <= fastest + tolerances.SOLVED * size]
         hit = equal[0 if first > 0 else -1]
-        after = jump(M, held, [hit], now, ImpactLaw(law))
+        after = Jump.of(M, held, [hit], now, ImpactLaw(law))
         now, of_held = after.u, of_held + after.held
         impulses[hit.name] = impulses[hit.name] + after.impulses[hit.name]
         for name, x in after.friction.items():

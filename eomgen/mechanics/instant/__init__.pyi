@@ -9,9 +9,6 @@ from eomgen.mechanics.instant.kinematic_state import KinematicState as Kinematic
 # Values at a state, in readable form; what is very long stays as it is
 from eomgen.mechanics.instant.kinematic_state import Readable as Readable
 
-# The motion of the bodies, of all of them where none is named; nodes of trusses are none
-from eomgen.mechanics.instant.kinematic_state import body_motions as body_motions
-
 # The motion of a point, seen from a body (or from the ground)
 from eomgen.mechanics.instant.kinematic_state import composition_of as composition_of
 from eomgen.mechanics.instant.mechanism import FIXED as FIXED
@@ -43,9 +40,6 @@ from eomgen.mechanics.instant.motion_kind import Kinds as Kinds
 
 # Values of the output functions in one system: the scene in which the functions are written
 from eomgen.mechanics.instant.quantities import Quantities as Quantities
-
-# True if a formula calls functions that are found from this source
-from eomgen.mechanics.instant.quantities import requests_of as requests_of
 
 # A system at one configuration
 from eomgen.mechanics.instant.velocity_analysis import InstantKinematics as InstantKinematics

@@ -363,28 +363,28 @@ class BodyMotion:
         except DerivationError:  # there is no such point
             return None
 
+    @staticmethod
+    def all_of(
+        system: System, state: Mapping[Node, Scalar], kinds: Kinds | None = None, bodies: Sequence[str] = ()
+    ) -> tuple[BodyMotion, ...]:
+        """The motion of the bodies, of all of them where none is named; nodes of trusses are none.
 
-def body_motions(
-    system: System, state: Mapping[Node, Scalar], kinds: Kinds | None = None, bodies: Sequence[str] = ()
-) -> tuple[BodyMotion, ...]:
-    """The motion of the bodies, of all of them where none is named; nodes of trusses are none.
-
-    Args:
-        state: exact scalars in place of coordinates, speeds, accelerations and t; {}: as functions of them.
-        kinds: gives the kinds of motion in the long run.
-    """
-    readable, plane = Readable.of(system, state), system.scope.model.space == "plane"
-    return tuple(
-        BodyMotion(
-            body,
-            readable.field(system.motion.field(body)),
-            readable,
-            _ends(system, readable, body),
-            plane,
-            _kind(kinds, body),
+        Args:
+            state: exact scalars in place of coordinates, speeds, accelerations and t; {}: as functions of them.
+            kinds: gives the kinds of motion in the long run.
+        """
+        readable, plane = Readable.of(system, state), system.scope.model.space == "plane"
+        return tuple(
+            BodyMotion(
+                body,
+                readable.field(system.motion.field(body)),
+                readable,
+                _ends(system, readable, body),
+                plane,
+                _kind(kinds, body),
+            )
+            for body in bodies or [link.name for link in system.motion.links if not is_node(link.name)]
         )
-        for body in bodies or [link.name for link in system.motion.links if not is_node(link.name)]
-    )
 
 
 def _kind(kinds: Kinds | None, body: str) -> Kind | None:

@@ -11,8 +11,8 @@ import numpy as np
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import DrivingForces, Indeterminate, Reactions, refuse_placeless
-from eomgen.mechanics.impacts import impact_equations
+from eomgen.mechanics.free_bodies import Balance, DrivingForces, Indeterminate, Reactions
+from eomgen.mechanics.impacts import ImpactEquations
 from eomgen.mechanics.instant.kinematic_state import Composition, body_axes, composition_of
 from eomgen.mechanics.instant.motion_kind import finite_center
 from eomgen.mechanics.kinematics import (
@@ -55,11 +55,6 @@ from eomgen.symbolic.numeric import Work, transplanted
 #
 # Positions are read off the poses; velocities and accelerations are their time derivatives, and the accelerations
 # hold the symbols a, in which they are linear.
-
-
-def requests_of(formula: Expression, source: str) -> bool:
-    """True if a formula calls functions that are found from this source."""
-    return any(call.name in FUNCTIONS and FUNCTIONS[call.name].source == source for call in formula.calls)
 
 
 @dataclass(frozen=True)
@@ -312,7 +307,7 @@ class Quantities:
     def _acts_at_no_place(self) -> bool:
         """True if the bodies cannot be balanced one by one, as a load acts at no place."""
         try:
-            refuse_placeless(self.system)
+            Balance.refuse_placeless(self.system)
         except DerivationError:
             return True
         return False
@@ -330,7 +325,7 @@ class Quantities:
             raise DerivationError(what, fix="ask impulse(CONTACT), or leave one contact that can")
         contact = owner if owner in ending else ending[0]
         standing = [name for name in ending if name not in modes or modes[name].closed]
-        found = impact_equations(model, (contact,), [name for name in standing if name != contact])
+        found = ImpactEquations.of(model, (contact,), [name for name in standing if name != contact])
         value = found.impulse_along(owner, along) if along is not None else found.impulses.get(owner)
         if value is None:
             raise DerivationError(f"'{owner}' has no impulse of its own", fix=f"one of {', '.join(found.impulses)}")
@@ -403,6 +398,11 @@ class Quantities:
             return scalar
         rates = self.system.free_rates(system)
         return substituted((scalar,), dict(zip(system.symbols.u, rates, strict=True)))[0]
+
+    @staticmethod
+    def requested_by(formula: Expression, source: str) -> bool:
+        """True if a formula calls functions that are found from this source."""
+        return any(call.name in FUNCTIONS and FUNCTIONS[call.name].source == source for call in formula.calls)
 
 
 # -------- energies --------------------------------------------------------------------------------------------

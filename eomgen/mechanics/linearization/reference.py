@@ -12,10 +12,10 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Row
 from eomgen.mechanics.dynamics import EquationsOfMotion, System
-from eomgen.mechanics.equilibrium import Equilibrium, StaticEquations, nearest_equilibrium, over_rates, static_equations
+from eomgen.mechanics.equilibrium import Equilibrium, StaticEquations, over_rates
 from eomgen.mechanics.integrals import position_equations
 from eomgen.mechanics.kinematics import Located
-from eomgen.mechanics.start import Start, refuse_lost
+from eomgen.mechanics.start import Start
 from eomgen.symbolic.expression import Node, Scalar, State, depends_on, holds_many_digits, is_zero, substituted
 from eomgen.symbolic.numeric import evaluate, fifty_digits, tolerances
 
@@ -96,7 +96,7 @@ def place_of_rest(system: System, guess: Mapping[str, float] | None = None) -> R
         DerivationError: none was found; a one-sided contact would have to pull.
         NotYet: speeds that are not rates.
     """
-    place = nearest_equilibrium(static_equations(system), guess)
+    place = Equilibrium.nearest(StaticEquations.of(system), guess)
     if system.scope.model.contacts:
         place.refuse_contradicted()
     return _place(place)
@@ -135,7 +135,7 @@ def relative_rest(equations: EquationsOfMotion, guess: Mapping[str, float] | Non
         symbols.lam,
         substituted(tuple(x for x in position_equations(system, start) if depends_on(x, own)), given),
     )
-    return _place(nearest_equilibrium(statics, guess))
+    return _place(Equilibrium.nearest(statics, guess))
 
 
 def _place(place: Equilibrium) -> ReferenceMotion:
@@ -208,7 +208,7 @@ def _with_inputs(reference: ReferenceMotion) -> ReferenceMotion:
         DerivationError: a coordinate is so far away that nothing small is left of it.
     """
     system = reference.system
-    refuse_lost({q: reference.numbers[q] for q in system.symbols.q})
+    Start.refuse_lost({q: reference.numbers[q] for q in system.symbols.q})
     given = {node: system.inputs[name] for name, node in system.symbols.inputs.items()}
     exact = dict(zip(given, substituted(tuple(given.values()), reference.exact), strict=True))
     exact = {x: value for x, value in exact.items() if not depends_on(value, system.symbols.x)}

@@ -24,12 +24,3 @@ from eomgen.mechanics.start.exact import values_where_at_rest as values_where_at
 
 # Start of a motion in numbers, and the changes that the constraints made necessary
 from eomgen.mechanics.start.state import Start as Start
-
-# A value of every symbol that stands in the constraints, at the start, with 50 digits
-from eomgen.mechanics.start.state import begun_state as begun_state
-
-# Refuses coordinates of which so few digits are left that a step or a difference is lost
-from eomgen.mechanics.start.state import refuse_lost as refuse_lost
-
-# Every speed at the start, as functions of the parameters and of where it starts
-from eomgen.mechanics.start.state import start_speeds as start_speeds

@@ -15,7 +15,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import SEEDS, hold_identically
 from eomgen.mechanics.dynamics import System, mass
 from eomgen.mechanics.kinematics import Located, Scope
-from eomgen.mechanics.start.state import Start, following_rates, start_speeds
+from eomgen.mechanics.start.state import Start, following_rates
 from eomgen.mechanics.state import Doubles, Numbers, Split
 from eomgen.symbolic.exact import LinearSystem, simplest
 from eomgen.symbolic.expression import (
@@ -148,7 +148,7 @@ def declared_start(system: System, *, at_rest: bool = False) -> dict[Node, Scala
     scope, sought = system.scope, set(system.constraints.fixed_by_position)
     given = {scope.symbols.t: 0} | scope.start_values(q for q in scope.symbols.q if q not in sought)
     start = scope.with_unit_quaternions(given)
-    speeds = dict.fromkeys(scope.symbols.u, 0) if at_rest else start_speeds(system)
+    speeds = dict.fromkeys(scope.symbols.u, 0) if at_rest else Start.speeds_of(system)
     start |= scope.start_values(scope.symbols.z)
     return start | dict(zip(scope.symbols.u, substituted(tuple(speeds.values()), start), strict=True))
 
@@ -341,7 +341,7 @@ def start_seeds(system: System, numbers: Mapping[Node, Any], seeds: Seeds, own: 
     silent = [q for q in silent if q not in given]
     what = own or "the parameter"
     dq = _kept(gaps, at(gaps, {**seeds, **dq}), silent, dq, numbers, what, _moved(begun, symbols.q, numbers))
-    speeds = start_speeds(system)
+    speeds = Start.speeds_of(system)
     du = dict(zip(symbols.u, map(Fraction, at([speeds[u] for u in symbols.u], {**seeds, **dq})), strict=True))
     du |= {u: Fraction(1) for u in symbols.u if u.name == own}
     rates = [row.velocity for row in system.constraints.closing]

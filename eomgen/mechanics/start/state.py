@@ -124,22 +124,41 @@ class Start:
         found = {node.name: _rounded(state[node], values[node.name]) for node in system.symbols.x}
         return Start(found, _changes(system, values, found, called) if names else (), names, fork, hit)
 
+    @staticmethod
+    def begun(system: System) -> State:
+        """A value of every symbol that stands in the constraints, at the start, with 50 digits."""
+        return _numbers(system, Start.of(system).values, None)
 
-def refuse_lost(places: Mapping[Node, Any]) -> None:
-    """Refuses coordinates of which so few digits are left that a step or a difference is lost.
+    @staticmethod
+    def refuse_lost(places: Mapping[Node, Any]) -> None:
+        """Refuses coordinates of which so few digits are left that a step or a difference is lost.
 
-    Raises:
-        DerivationError: the first of them is named.
-    """
-    for node, x in places.items():
-        if abs(x) > tolerances.LARGEST_AT_50:
-            what = f"'{node.name}' is at {float(x):.6g}, where no digit is left of a small motion"
-            raise DerivationError(what, f"coordinates.{node.name}", "start nearer to 0, an angle less whole turns")
+        Raises:
+            DerivationError: the first of them is named.
+        """
+        for node, x in places.items():
+            if abs(x) > tolerances.LARGEST_AT_50:
+                what = f"'{node.name}' is at {float(x):.6g}, where no digit is left of a small motion"
+                raise DerivationError(what, f"coordinates.{node.name}", "start nearer to 0, an angle less whole turns")
 
+    @staticmethod
+    def speeds_of(system: System) -> dict[Node, Scalar]:
+        """Every speed at the start, as functions of the parameters and of where it starts.
 
-def begun_state(system: System) -> State:
-    """A value of every symbol that stands in the constraints, at the start, with 50 digits."""
-    return _numbers(system, Start.of(system).values, None)
+        Where no declared speed of the same rates has a start, the start speeds of the coordinates make them.
+        """
+        scope, begun = system.scope, system.scope.model.begun_speeds
+        model = scope.model
+        found: dict[Node, Scalar] = {}
+        rates = {f"{name}'": scope.value(part.speed) for name, part in model.coordinates.items() if not part.driven}
+        for u in scope.symbols.u:
+            if u.name in rates:
+                found[u] = rates[u.name]
+            elif u.name in begun:
+                found[u] = scope.value(model.speeds[u.name].start)
+            else:
+                found[u] = _by_rates(system, u.name, rates)
+        return found
 
 
 # -- values at which the constraints hold -------------------------------------------------------------------
@@ -268,25 +287,6 @@ def _rounded(x: Any, given: float) -> float:
     return 0.0 if abs(x) < tolerances.COORDINATE_AT_50 and float(x) != given else float(x)
 
 
-def start_speeds(system: System) -> dict[Node, Scalar]:
-    """Every speed at the start, as functions of the parameters and of where it starts.
-
-    Where no declared speed of the same rates has a start, they are what the start speeds of the coordinates make them.
-    """
-    scope, begun = system.scope, system.scope.model.begun_speeds
-    model = scope.model
-    found: dict[Node, Scalar] = {}
-    rates = {f"{name}'": scope.value(part.speed) for name, part in model.coordinates.items() if not part.driven}
-    for u in scope.symbols.u:
-        if u.name in rates:
-            found[u] = rates[u.name]
-        elif u.name in begun:
-            found[u] = scope.value(model.speeds[u.name].start)
-        else:
-            found[u] = _by_rates(system, u.name, rates)
-    return found
-
-
 def _by_rates(system: System, speed: str, rates: Mapping[str, Scalar]) -> Scalar:
     """A declared speed at given rates, those of dependent coordinates as the constraints make them, at t = 0."""
     free = system.free
@@ -331,7 +331,7 @@ def _by_coordinates(
     model, symbols = system.scope.model, system.symbols
     begun = model.begun_speeds
     silent = [u for u in symbols.u if u.name in model.speeds and u.name not in begun]
-    formulas = start_speeds(system) if silent else {}
+    formulas = Start.speeds_of(system) if silent else {}
     requested = tuple(formulas[u] for u in silent)
     used = set(symbols_of(requested))
     p = model.numeric_parameters(parameters, needed=[name for name, x in symbols.parameters.items() if x in used])

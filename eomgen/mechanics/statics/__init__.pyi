@@ -48,6 +48,3 @@ from eomgen.mechanics.statics.virtual_work import WorkEquation as WorkEquation
 
 # The virtual work of one load, not 0
 from eomgen.mechanics.statics.virtual_work import WorkTerm as WorkTerm
-
-# One reaction, or unknown of the loads, by its virtual work alone; the other degrees of freedom are at rest
-from eomgen.mechanics.statics.virtual_work import released_in as released_in

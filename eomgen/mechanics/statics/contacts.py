@@ -10,8 +10,8 @@ from random import Random
 
 from eomgen.errors import DerivationError, ModelError, UsageError
 from eomgen.frozen import dataclass, recalled
-from eomgen.mechanics.constraints import rows_of_constraint
-from eomgen.mechanics.dynamics import EquationsOfMotion, System, exact_accelerations, system_of
+from eomgen.mechanics.constraints import Row
+from eomgen.mechanics.dynamics import EquationsOfMotion, System, exact_accelerations
 from eomgen.mechanics.free_bodies import Reactions, SystemFriction, equations_of_motion
 from eomgen.mechanics.kinematics import ContactMode, ContactModes
 from eomgen.mechanics.start import Start
@@ -112,7 +112,7 @@ class _StartNumbers:
         """The equations of motion under these modes, derived once: the values of parameters alone differ."""
         key = frozenset(modes.items())
         if key not in self._known:
-            self._known[key] = equations_of_motion(system_of(self.model, modes))
+            self._known[key] = equations_of_motion(System.of(self.model, modes))
         return self._known[key]
 
     @property
@@ -136,7 +136,7 @@ class _StartNumbers:
             return ContactsAtStart()
         rebounding = {c.name for c in self.model.contacts if c.restitution is not None}
         try:
-            if rebounding.isdisjoint(Start.of(system_of(self.model), self.drawn).hit):
+            if rebounding.isdisjoint(Start.of(System.of(self.model), self.drawn).hit):
                 return ContactsAtStart()
             return self._by_gaps(names)
         except DerivationError:  # as a start that leaves a contact open is refused
@@ -146,7 +146,7 @@ class _StartNumbers:
 
     def _by_gaps(self, names: Sequence[str]) -> ContactsAtStart:
         try:
-            free = system_of(self.model, dict.fromkeys(names, OPEN))
+            free = System.of(self.model, dict.fromkeys(names, OPEN))
             gaps, rates = _gaps(free, names, self.drawn), _rates(free, names, self.drawn)
             others = {p: _gaps(free, names, {**self.drawn, p: 1.7 * self.drawn[p]}) for p in self.missing}
         except (DerivationError, ModelError, UsageError) as error:
@@ -202,7 +202,7 @@ class _StartNumbers:
         forces = [x for contact in held for x in _forces(reactions, contact)]
         state = _state(system, drawn)
         state |= dict(zip(system.symbols.a, exact_accelerations(equations, state), strict=True))
-        rates = tuple(rows_of_constraint(system.motion, contact.name)[0].velocity for contact in free)
+        rates = tuple(Row.of_constraint(system.motion, contact.name)[0].velocity for contact in free)
         digits = fifty_digits()
         pushes = evaluate(forces, state, digits)
         opening = evaluate(scope.with_accelerations(rates), state, digits) if rates else []
@@ -246,7 +246,7 @@ class _StartNumbers:
 
     def still(self, opened: ContactModes) -> set[str]:
         """The contacts with dry friction that do not slide at the start."""
-        system = system_of(self.model, opened)
+        system = System.of(self.model, opened)
         state, rough = _state(system, self.drawn), {c.name for c in self.model.contacts if c.dry}
         sliding: list[tuple[str, Scalar]] = [(name, v) for name, _, v in SystemFriction(system).named if name in rough]
         for contact in self.model.contacts:
@@ -277,7 +277,7 @@ def _state(system: System, drawn: Numbers) -> State:
 def _gaps(free: System, names: Sequence[str], drawn: Numbers) -> dict[str, float]:
     """Gap of each contact at the start; a strand that has no gap is taut."""
     state = _state(free, drawn)
-    gaps = {name: rows_of_constraint(free.motion, name)[0].gap for name in names}
+    gaps = {name: Row.of_constraint(free.motion, name)[0].gap for name in names}
     values = evaluate(tuple(0 if gap is None else gap for gap in gaps.values()), state, fifty_digits())
     return {name: float(value) for name, value in zip(gaps, values, strict=True)}
 
@@ -285,7 +285,7 @@ def _gaps(free: System, names: Sequence[str], drawn: Numbers) -> dict[str, float
 def _rates(free: System, names: Sequence[str], drawn: Numbers) -> dict[str, float]:
     """Rate at which each contact opens at the start."""
     values = evaluate(
-        tuple(rows_of_constraint(free.motion, name)[0].velocity for name in names), _state(free, drawn), fifty_digits()
+        tuple(Row.of_constraint(free.motion, name)[0].velocity for name in names), _state(free, drawn), fifty_digits()
     )
     return {name: float(value) for name, value in zip(names, values, strict=True)}
 

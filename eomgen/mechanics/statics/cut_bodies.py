@@ -12,7 +12,7 @@ import numpy as np
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import Axes, Balance, Component, Effect, efforts_of
+from eomgen.mechanics.free_bodies import Axes, Balance, Component, Effect
 from eomgen.mechanics.kinematics import BodyLink
 from eomgen.mechanics.statics.forces_in_sections import KINDS, SectionForces
 from eomgen.mechanics.statics.member_axis import MemberAxis
@@ -119,7 +119,7 @@ def _loads(system: System) -> Iterator[ActingForce]:
             symbol = next((x for x in system.symbols.unknowns.values() if x in held), None)
             yield ActingForce(f"the force {force.name}", pushes, force.name, symbol, force.spread)
     for link in system.motion.links:
-        if efforts := efforts_of(system, link.name):
+        if efforts := Effect.of_joint(system, link.name):
             yield ActingForce(f"what acts in the joint of {link.name}", _pushes(system, efforts), link.name)
 
 

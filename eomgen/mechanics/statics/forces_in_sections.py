@@ -21,7 +21,7 @@ import numpy as np
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import Axes, Component, Effect, Reactions, joint_effects
+from eomgen.mechanics.free_bodies import Axes, Component, Effect, Reactions
 from eomgen.mechanics.statics.member_axis import Leg, MemberAxis, Sizes, axis_of, sizes_of
 from eomgen.model import Couple, PointForce
 from eomgen.symbolic.exact import vanishes
@@ -392,7 +392,7 @@ class MemberLoads:
                 placed = [load for load in force.loads if isinstance(load, (PointForce, Couple))]
                 effects = [e for load in placed for e in axes.effects_of(load) if e.link == link]
                 yield from (self._placed(effect, f"the force '{force.name}'") for effect in effects)
-        yield from (effect for effect in joint_effects(system) if effect.link == link)
+        yield from (effect for effect in Effect.of_joints(system) if effect.link == link)
 
     def _place_of(self, effect: Effect, owner: str) -> Vector:
         """Place of a reaction: of a couple that of the forces of the same constraint."""

@@ -16,7 +16,7 @@ from typing import TypeVar
 
 from eomgen.errors import DerivationError, ExpressionError, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.free_bodies import Effect, Structure, VelocityPlan, named_reactions
+from eomgen.mechanics.free_bodies import Effect, NamedReaction, Structure, VelocityPlan
 from eomgen.mechanics.statics.forces_in_sections import KINDS, place_of
 from eomgen.mechanics.statics.member_axis import MemberAxis, Sizes, axis_of, sizes_of
 from eomgen.mechanics.statics.virtual_work import argument_name, name_of
@@ -111,7 +111,7 @@ def _call(requested: str) -> Call:
 
 def _combination(structure: Structure, call: Call) -> dict[int, Scalar]:
     """The reaction as a sum of components."""
-    table = {n.name: n for n in named_reactions(structure.balance)}
+    table = {n.name: n for n in NamedReaction.all_of(structure.balance)}
     name = name_of(call, table)
     if name not in table:
         listed = nearest(name, table) or f"there are {', '.join(table)}"

@@ -23,8 +23,6 @@ from eomgen.mechanics.free_bodies import (
     Structure,
     VelocityPlan,
     determinate_sums,
-    efforts_of,
-    named_reactions,
 )
 from eomgen.mechanics.kinematics import SystemScene
 from eomgen.mechanics.statics.ranges import RestRange, ranges_of_rest
@@ -136,7 +134,7 @@ def loads_at_rest(structure: Structure) -> tuple[Acting, ...]:
                 masses = SystemScene(system.motion).masses(None)
                 found += [Acting(force.name, PointForce(place, m * load.acceleration)) for place, m in masses]
     for link in system.motion.links:
-        effects = tuple(efforts_of(system, link.name))
+        effects = tuple(Effect.of_joint(system, link.name))
         if effects:
             found.append(Acting(link.name, None, effects))
     return tuple(found)
@@ -144,7 +142,7 @@ def loads_at_rest(structure: Structure) -> tuple[Acting, ...]:
 
 def requested_reactions(structure: Structure) -> dict[str, NamedReaction]:
     """The reactions that have a name in outputs."""
-    named = named_reactions(structure.balance)
+    named = NamedReaction.all_of(structure.balance)
     return {n.name: n for n in named if n.name.partition("(")[0] in FUNCTIONS}
 
 
@@ -241,6 +239,28 @@ class StaticReaction:
     def value(self) -> Scalar | None:
         """Value of the reaction; None where it is statically indeterminate."""
         return self.balanced if self.work is None else self.work.value
+
+    @staticmethod
+    def released(structure: Structure, name: str) -> StaticReaction:
+        """One reaction, or unknown of the loads, by its virtual work alone; the other degrees of freedom are at rest.
+
+        Raises:
+            UsageError: there is no such reaction.
+            DerivationError: released, nothing can move.
+        """
+        requested, unknowns = requested_reactions(structure), {unknown.name: unknown for unknown in structure.unknowns}
+        one = _one_of((*requested, *unknowns), name)
+        named = requested.get(one)
+        unit = unit_of_unknown(structure, unknowns[one]) if named is None else named.unit
+        work = unknown_by_virtual_work(structure, unknowns[one]) if named is None else by_virtual_work(structure, named)
+        if work is None:
+            what = f"{one} is statically indeterminate: released, the other reactions hold the bodies without it"
+            raise DerivationError(what, fix="take a redundant constraint away")
+        if not work.plan.moving:
+            raise DerivationError(
+                f"{one} holds nothing: its constraint leaves this motion free", fix="take the constraint away"
+            )
+        return StaticReaction(one, unit, named, None, structure.system.scope.positive, work)
 
 
 @dataclass(frozen=True)
@@ -389,28 +409,6 @@ def reactions_in(structure: Structure, *, only: str | None = None) -> StaticReac
         solved, unit = balance.unknowns.get(unknown), unit_of_unknown(structure, unknown)
         found.append(StaticReaction(unknown.name, unit, None, solved, positive, work))
     return StaticReactions(structure, tuple(found), balance)
-
-
-def released_in(structure: Structure, name: str) -> StaticReaction:
-    """One reaction, or unknown of the loads, by its virtual work alone; the other degrees of freedom are at rest.
-
-    Raises:
-        UsageError: there is no such reaction.
-        DerivationError: released, nothing can move.
-    """
-    requested, unknowns = requested_reactions(structure), {unknown.name: unknown for unknown in structure.unknowns}
-    one = _one_of((*requested, *unknowns), name)
-    named = requested.get(one)
-    unit = unit_of_unknown(structure, unknowns[one]) if named is None else named.unit
-    work = unknown_by_virtual_work(structure, unknowns[one]) if named is None else by_virtual_work(structure, named)
-    if work is None:
-        what = f"{one} is statically indeterminate: released, the other reactions hold the bodies without it"
-        raise DerivationError(what, fix="take a redundant constraint away")
-    if not work.plan.moving:
-        raise DerivationError(
-            f"{one} holds nothing: its constraint leaves this motion free", fix="take the constraint away"
-        )
-    return StaticReaction(one, unit, named, None, structure.system.scope.positive, work)
 
 
 def unit_of_unknown(structure: Structure, unknown: Node) -> str:

@@ -95,6 +95,36 @@ class Strand:
         """A unit of tension: + d on what the strand leaves, - d on what it reaches."""
         return (*self.first.pulled(self.d, 1), *self.second.pulled(self.d, -1))
 
+    @classmethod
+    def between(cls, scene: LoadContext, first: Stop, second: Stop) -> Strand:
+        """The strand that touches both: with D = c_2 - c_1, h = a_1 - a_2 and l = sqrt(D . D - h^2) it is
+
+            d = (l D - h left(D)) / D . D,   for then d . D = l and left(d) . D = h.
+
+        Raises:
+            ModelError: at the start there is no such line; in space, it is not across the axis of what it lies on.
+        """
+        D = second.center - first.center
+        _refuse_out_of_plane(scene, first, second, D)
+        h = first.offset - _same_way_round(first, second) * second.offset
+        side = (first if first.round else second).left
+        straight = _straight(scene, D, h, side)
+        if straight is not None:
+            return cls(first, second, *straight)
+        square = D @ D
+        rest = square if _zero(h) else square - h * h
+        span = scene.value_at_start(rest)
+        if span is not None and span <= 0:
+            raise ModelError(
+                f"there is no straight strand between {_names(first, second)} at the start",
+                scene.where,
+                "put them apart, or give the directions in 'strands'",
+            )
+        length = sqrt(rest)
+        if _zero(h):
+            return cls(first, second, _over(D, length), length)
+        return cls(first, second, _over(length * D - h * side(D), square), None)
+
 
 def strand_along(scene: LoadContext, first: Stop, second: Stop, d: Vector) -> Strand:
     """The strand that keeps the direction d: its length grows with d . (c_2 - c_1).
@@ -108,36 +138,6 @@ def strand_along(scene: LoadContext, first: Stop, second: Stop, d: Vector) -> St
     if run is not None and run < -tolerances.COMPUTED:
         raise _against(scene, first, second)
     return Strand(first, second, d, length)
-
-
-def common_tangent(scene: LoadContext, first: Stop, second: Stop) -> Strand:
-    """The strand that touches both: with D = c_2 - c_1, h = a_1 - a_2 and l = sqrt(D . D - h^2) it is
-
-        d = (l D - h left(D)) / D . D,   for then d . D = l and left(d) . D = h.
-
-    Raises:
-        ModelError: at the start there is no such line; in space, it is not across the axis of what it lies on.
-    """
-    D = second.center - first.center
-    _refuse_out_of_plane(scene, first, second, D)
-    h = first.offset - _same_way_round(first, second) * second.offset
-    side = (first if first.round else second).left
-    straight = _straight(scene, D, h, side)
-    if straight is not None:
-        return Strand(first, second, *straight)
-    square = D @ D
-    rest = square if _zero(h) else square - h * h
-    span = scene.value_at_start(rest)
-    if span is not None and span <= 0:
-        raise ModelError(
-            f"there is no straight strand between {_names(first, second)} at the start",
-            scene.where,
-            "put them apart, or give the directions in 'strands'",
-        )
-    length = sqrt(rest)
-    if _zero(h):
-        return Strand(first, second, _over(D, length), length)
-    return Strand(first, second, _over(length * D - h * side(D), square), None)
 
 
 def _straight(

@@ -8,7 +8,7 @@ from eomgen.frozen import dataclass
 from eomgen.model.catalog import Catalog, diagnostics_of_one, is_round, owner_of
 from eomgen.model.constraints.base import Constraint, Thread
 from eomgen.model.constraints.row import ConstraintRow, Edge, direction_of
-from eomgen.model.constraints.strand import Stop, Strand, common_tangent, rope_row, side_rows, strand_along
+from eomgen.model.constraints.strand import Stop, Strand, rope_row, side_rows, strand_along
 from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.fields import EitherRule, ListRule, NameRule, TextRule, VectorRule
 from eomgen.model.forces.load import LoadContext
@@ -86,7 +86,7 @@ class String(Constraint):
         """The strands from stop to stop, along given directions or common tangents."""
         pairs = pairwise([_stop(scene, item) for item in self.path])
         if self.strands is None:
-            return tuple(common_tangent(scene, *pair) for pair in pairs)
+            return tuple(Strand.between(scene, *pair) for pair in pairs)
         ways = [_direction(scene, way) for way in self.strands]
         return tuple(strand_along(scene, *pair, d) for pair, d in zip(pairs, ways, strict=True))
 

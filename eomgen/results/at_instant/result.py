@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen import compiled, program_of
+from eomgen.codegen import Program, RightHandSide
 from eomgen.documents import (
     Cell,
     Document,
@@ -30,7 +30,7 @@ from eomgen.documents import (
 from eomgen.errors import MissingValues, RunFailed
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.instant import FIXED, Centrodes, Kinds, KinematicState, Mechanism, RotationCenter, body_motions
+from eomgen.mechanics.instant import FIXED, BodyMotion, Centrodes, Kinds, KinematicState, Mechanism, RotationCenter
 from eomgen.model import ModelOrPath, Values, WrittenEquation, model_at
 from eomgen.proof import Certificate, certify, instant_checks
 from eomgen.resources import doing
@@ -82,7 +82,9 @@ class Kinematics(Result):
         """Check the equations of motion where the motion follows them, and all velocities by differences of places."""
         state = self.state
         base = Certificate(()) if state.equations is None else certify(state.equations)
-        bodies = body_motions(state.system, state.state, self.kinds) if state.accelerated and state.is_short else ()
+        bodies = (
+            BodyMotion.all_of(state.system, state.state, self.kinds) if state.accelerated and state.is_short else ()
+        )
         return base + instant_checks(state, bodies, self.relative)
 
     @cached_property
@@ -102,7 +104,7 @@ class Kinematics(Result):
         if self.state.accelerated and self.state.is_short:
             kinds, *fields = field_steps(system, state, self.kinds, self._shown)
             return (self._within_lines(kinds), *fields)
-        motions = body_motions(system, self.state.moving, self.kinds)
+        motions = BodyMotion.all_of(system, self.state.moving, self.kinds)
         return (self._within_lines(kinds_step(motions, particles_of(system))),)
 
     def _within_lines(self, step: Step) -> Step:
@@ -324,7 +326,7 @@ PlaneSlope = Callable[[np.ndarray], np.ndarray]
 def _slope(system: System, rates: tuple[Scalar, ...], values: State) -> PlaneSlope:
     """The rates as functions of t and the coordinates."""
     symbols = system.symbols
-    function = compiled(program_of(rates, symbols), "numpy")
+    function = RightHandSide.of(Program.of(rates, symbols), "numpy")
     p = np.array([values[node] for node in symbols.parameters.values()])
     speeds = np.ones(len(symbols.u))
     return lambda x: np.asarray(function(float(x[0]), np.append(x[1:], speeds), p), dtype=float)

@@ -38,7 +38,6 @@ from eomgen.mechanics.instant import (
     PointPair,
     Readable,
     RotationCenter,
-    body_motions,
     composition_of,
 )
 from eomgen.symbolic.exact import book_form, vanishes
@@ -80,7 +79,7 @@ def field_steps(
         state: exact scalars in place of coordinates, speeds, accelerations and t; {}: as functions of them.
         kinds: of the motions in the long run, of which the state is an instant; None: only the instant is known.
     """
-    motions, particles = body_motions(system, state, kinds), particles_of(system)
+    motions, particles = BodyMotion.all_of(system, state, kinds), particles_of(system)
     bodies = [motion for motion in motions if motion.body not in particles]
     steps = (kinds_step(motions, particles), *fields_step(bodies, shown, plane=system.scope.model.space == "plane"))
     return steps if kinds is None else (*steps, *centrodes_step(kinds.centrodes(), kinds.constants.positive))
@@ -89,7 +88,7 @@ def field_steps(
 def field_payload(system: System, state: Mapping[Node, Scalar], kinds: Kinds | None = None) -> dict[str, Any]:
     """The same for machines: every expression is text of the grammar."""
     found = {} if kinds is None else {each.body: each for each in kinds.centrodes()}
-    return {motion.body: _payload(motion, found.get(motion.body)) for motion in body_motions(system, state, kinds)}
+    return {motion.body: _payload(motion, found.get(motion.body)) for motion in BodyMotion.all_of(system, state, kinds)}
 
 
 def particles_of(system: System) -> tuple[str, ...]:

@@ -36,7 +36,7 @@ from eomgen.mechanics.linearization import (
     StateMatrices,
 )
 from eomgen.mechanics.state import Entries
-from eomgen.model import Model, ModelOrPath, Range, Values, range_of
+from eomgen.model import Model, ModelOrPath, Range, Values
 from eomgen.proof import Certificate, Check, DrawnPanel, certify_small_motions, small_motions_drawn
 from eomgen.resources import doing
 from eomgen.results.small_motions.steps import linearization_steps, printed_modes
@@ -284,7 +284,7 @@ class Linearization(Result):
             UsageError: no such parameter, no range.
             RunFailed: parameters have no values; the equations are only known at those.
         """
-        return replace(self, drawn="locus", over=range_of(self.model, over, declared=False)).picture
+        return replace(self, drawn="locus", over=Range.of(self.model, over, declared=False)).picture
 
     def entries(self) -> dict[str, Any]:
         """Entries of the JSON document."""

@@ -64,12 +64,6 @@ from eomgen.symbolic.exact.factorization import Zeros as Zeros
 # The accelerations a of M a = F, as expressions
 from eomgen.symbolic.exact.factorization import factor_solution as factor_solution
 
-# Places of the entries that are not zero in the factors of M, eliminated in row order, and in L^-1 J^T
-from eomgen.symbolic.exact.factorization import zeros_of as zeros_of
-
-# The same of M + J^T W J with any diagonal W
-from eomgen.symbolic.exact.factorization import zeros_with_constraints as zeros_with_constraints
-
 # sum over j of rows[i][j] x_j = right[i]
 from eomgen.symbolic.exact.linear import LinearSystem as LinearSystem
 

@@ -151,24 +151,24 @@ class Zeros:
         left = sum(4 * d + 2 for d in degrees) + 4 * touched
         return 2 * once + left if self.reach else once
 
+    @classmethod
+    def of(cls, M: Sequence[MatrixRow], J: Sequence[MatrixRow]) -> Zeros:
+        """Places of the entries that are not zero in the factors of M, eliminated in row order, and in L^-1 J^T.
 
-def zeros_of(M: Sequence[MatrixRow], J: Sequence[MatrixRow]) -> Zeros:
-    """Places of the entries that are not zero in the factors of M, eliminated in row order, and in L^-1 J^T.
+        Args:
+            M: symmetric, n x n; structural zeros are the number 0.
+            J: k x n.
+        """
+        return _filled(_later(M), _touched(J))
 
-    Args:
-        M: symmetric, n x n; structural zeros are the number 0.
-        J: k x n.
-    """
-    return _filled(_later(M), _touched(J))
-
-
-def zeros_with_constraints(M: Sequence[MatrixRow], J: Sequence[MatrixRow]) -> Zeros:
-    """The same of M + J^T W J with any diagonal W."""
-    later, touched = _later(M), _touched(J)
-    for row in touched:
-        for j in members(row):
-            later[j] |= _above(row, j)
-    return _filled(later, touched)
+    @classmethod
+    def with_constraints(cls, M: Sequence[MatrixRow], J: Sequence[MatrixRow]) -> Zeros:
+        """The same of M + J^T W J with any diagonal W."""
+        later, touched = _later(M), _touched(J)
+        for row in touched:
+            for j in members(row):
+                later[j] |= _above(row, j)
+        return _filled(later, touched)
 
 
 def mask_of(places: Iterable[int]) -> int:

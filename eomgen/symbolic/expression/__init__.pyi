@@ -132,9 +132,6 @@ from eomgen.symbolic.expression.splines import DeclaredSamples as DeclaredSample
 # A function through samples, which the graph holds as one operation on t
 from eomgen.symbolic.expression.splines import Sampled as Sampled
 
-# The function of this number
-from eomgen.symbolic.expression.splines import sampled_of as sampled_of
-
 # The function through samples: "cubic" (f'' continuous), "pchip" (cubics, monotone between samples), "linear"
 from eomgen.symbolic.expression.splines import spline_of as spline_of
 from eomgen.symbolic.expression.text import DEGREES as DEGREES

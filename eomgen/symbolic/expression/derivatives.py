@@ -11,7 +11,7 @@ from typing import Any
 
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.node import Node, Scalar, argument
-from eomgen.symbolic.expression.splines import number_of_sampled, sampled_of
+from eomgen.symbolic.expression.splines import Sampled, number_of_sampled
 from eomgen.symbolic.expression.traversal import order
 
 LONG, FEWER = 10_000, 3  # nodes that sweeps meet; how many times fewer change their way
@@ -283,7 +283,7 @@ def _shares(x: Node, w: Scalar) -> list[tuple[Scalar, Scalar]]:
 
 
 def _rate_of_sampled(g: Graph, t: Scalar, k: Scalar) -> Scalar:
-    rate = sampled_of(k).derivative()
+    rate = Sampled.of(k).derivative()
     return 0 if rate.spline.vanishes else g.call("sampled", t, number_of_sampled(rate))
 
 

@@ -32,7 +32,7 @@ from eomgen.symbolic.expression.node import (
 )
 from eomgen.symbolic.expression.numbers import Number, binary_folded_at, exact, exact_power, folded_at, root_of, tidy
 from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.splines import number_of_sampled, sampled_of
+from eomgen.symbolic.expression.splines import Sampled, number_of_sampled
 
 __all__ = [
     "BINARY",
@@ -80,7 +80,7 @@ class Graph:
             "constants": sorted(x.index for x in self._constants),
             "spheres": [tuple(x.index for x in symbols) for symbols in self.unit_quaternions],
             "near": {x.index: value for x, value in self.near.items()},
-            "samples": [sampled_of(x.args[1]) for x in self.nodes if x.op == "sampled"],
+            "samples": [Sampled.of(x.args[1]) for x in self.nodes if x.op == "sampled"],
         }
 
     def __setstate__(self, state: dict[str, Any]) -> None:

@@ -6,7 +6,7 @@ from math import isqrt
 
 from eomgen.errors import DerivationError
 from eomgen.symbolic.expression.rational import EXACT, Fraction
-from eomgen.symbolic.expression.splines import sampled_of
+from eomgen.symbolic.expression.splines import Sampled
 
 Number = int | Fraction
 
@@ -82,6 +82,6 @@ def binary_folded_at(name: str, a: Number, b: Number) -> Number | None:
     if name == "less_equal":
         return int(a <= b)
     if name == "sampled":
-        sampled = sampled_of(b)
+        sampled = Sampled.of(b)
         return None if sampled.pi_power else tidy(sampled.spline.at(Fraction(a)))
     return 0 if name == "atan2" and a == 0 and b > 0 else None

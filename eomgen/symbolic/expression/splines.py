@@ -199,6 +199,11 @@ class Sampled:
         value = self.spline.chosen(self.measured(t, pi, _tidy), choose)
         return value * pi**self.pi_power if self.pi_power else value
 
+    @staticmethod
+    def of(number: Any) -> Sampled:
+        """The function of this number."""
+        return _BY_NUMBER[int(number)]
+
 
 _BY_NUMBER: dict[int, Sampled] = {}  # a table that is made again wherever a function is named
 
@@ -214,11 +219,6 @@ def number_of_sampled(sampled: Sampled) -> int:
     if _BY_NUMBER.setdefault(number, sampled) != sampled:
         raise RuntimeError(f"the functions '{sampled.name}' and '{_BY_NUMBER[number].name}' have one number")
     return number
-
-
-def sampled_of(number: Any) -> Sampled:
-    """The function of this number."""
-    return _BY_NUMBER[int(number)]
 
 
 def spline_of(

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from flint import arb, arf, ctx
 
-from eomgen.symbolic.expression import Node, Number, Scalar, sampled_of
+from eomgen.symbolic.expression import Node, Number, Sampled, Scalar
 from eomgen.symbolic.numeric import tolerances
 from eomgen.symbolic.numeric.digits import BITS, ZERO, LongReal, ball_of, precision
 from eomgen.symbolic.numeric.evaluation import PRIME, Arithmetic, NoValue, evaluate, nearest
@@ -161,7 +161,7 @@ def _angle_at_last(a: Ball, b: Ball) -> Ball:
 
 def _sampled(t: Ball, k: Ball) -> Ball:
     """Samples at t: as far apart as they are at the ends of its ball; twice, for what lies in between."""
-    sampled = sampled_of(float(k))
+    sampled = Sampled.of(float(k))
 
     def at(y: Ball) -> Ball:
         value: LongReal = sampled.at(LongReal(y), lambda c: LongReal(ball_of(c).mid()), LongReal(arb.pi().mid()))

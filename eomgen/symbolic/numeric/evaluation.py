@@ -21,11 +21,11 @@ from eomgen.symbolic.expression import (
     Graph,
     Node,
     Number,
+    Sampled,
     Scalar,
     function,
     order,
     over,
-    sampled_of,
     symbols_of,
 )
 
@@ -211,7 +211,7 @@ FLOAT = Arithmetic(
     _RING
     | _ORDERED
     | {op: getattr(math, op) for op in "sqrt sin cos tan asin acos atan sinh cosh tanh exp log atan2".split()}
-    | {"pow": math.pow, "pi": lambda: math.pi, "sampled": lambda t, k: sampled_of(k).at(t, float, math.pi)},
+    | {"pow": math.pow, "pi": lambda: math.pi, "sampled": lambda t, k: Sampled.of(k).at(t, float, math.pi)},
     lambda x: math.nan,
 )
 
@@ -233,9 +233,9 @@ def _whole_power(a: Any, exponent: Any) -> Any:
 
 
 def _rational_sample(t: Fraction, k: Fraction) -> Fraction:
-    if sampled_of(k).pi_power or (sampled_of(k).measure[1] and t != 0):
+    if Sampled.of(k).pi_power or (Sampled.of(k).measure[1] and t != 0):
         raise NoMeaning("pi is not rational")
-    return Fraction(sampled_of(k).spline.at(t * sampled_of(k).measure[0]))
+    return Fraction(Sampled.of(k).spline.at(t * Sampled.of(k).measure[0]))
 
 
 RATIONAL = Arithmetic(
@@ -314,7 +314,7 @@ def fifty_digits(partial: bool = False) -> Arithmetic:
 
     number = lru_cache(maxsize=NUMBERS_KEPT)(real)
     functions = FUNCTIONS if partial else {op: finite(function) for op, function in FUNCTIONS.items()}
-    sampled = {"sampled": lambda t, k: sampled_of(k).at(t, number, FUNCTIONS["pi"]())}
+    sampled = {"sampled": lambda t, k: Sampled.of(k).at(t, number, FUNCTIONS["pi"]())}
     failed = (lambda x: NAN) if partial else _no_value
     return Arithmetic("50 digits", number, _RING | _ORDERED | functions | sampled, failed, by_balls)
 
@@ -341,7 +341,7 @@ _ON_ARRAYS: dict[str, Callable[..., Any]] = {
     "max": np.maximum,
     "select": np.where,
     "pi": lambda: np.pi,
-    "sampled": np.vectorize(lambda t, k: sampled_of(k).at(t, nearest, np.pi), otypes=[float]),
+    "sampled": np.vectorize(lambda t, k: Sampled.of(k).at(t, nearest, np.pi), otypes=[float]),
     **{op: getattr(np, op) for op in "sqrt sin cos tan sinh cosh tanh exp log abs sign less less_equal".split()},
 }
 ARRAYS = Arithmetic("arrays", nearest, _ON_ARRAYS, lambda x: np.nan)

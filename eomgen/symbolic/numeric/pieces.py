@@ -23,7 +23,6 @@ from eomgen.symbolic.expression import (
     holds_op,
     linear_terms,
     order,
-    sampled_of,
     substituted,
     symbols_of,
 )
@@ -131,7 +130,7 @@ def choices_at(nodes: Sequence[Node], state: State) -> Choices | None:
             found.append(0)
             continue
         digits = fifty_digits()
-        ends = [*sampled_of(x.args[1]).ends(digits.functions["pi"](), digits.number)] if x.op == "sampled" else [b]
+        ends = [*Sampled.of(x.args[1]).ends(digits.functions["pi"](), digits.number)] if x.op == "sampled" else [b]
         if any(abs(a - end) <= tolerances.CERTAIN_AT_50 * (1 + abs(end)) for end in ends):
             return None
         passed = len([end for end in ends if a > end])
@@ -149,7 +148,7 @@ def as_chosen(scalars: Sequence[Scalar], nodes: Sequence[Node], choices: Choices
     known: dict[Node, Scalar] = {}
     for x in order(scalars):
         if x.op == "sampled" and x in chosen:
-            known[x] = _polynomial_of(sampled_of(x.args[1]), chosen[x], substituted(x.args[:1], known)[0], x.graph.pi)
+            known[x] = _polynomial_of(Sampled.of(x.args[1]), chosen[x], substituted(x.args[:1], known)[0], x.graph.pi)
         elif chosen.get(x):
             known[x] = _as_chosen(x, chosen[x], substituted(compared_sides(x), known))
         elif x.op == "select":
@@ -216,4 +215,4 @@ def _thrown_by(x: Node) -> Iterator[tuple[dict[Any, Any], Sequence[Scalar]]]:
     elif x.op in ABOUT_ZERO or _base(x) is not None:
         yield linear_terms(compared_sides(x)[0]), (0,)
     elif x.op == "sampled":
-        yield linear_terms(x.args[0]), sampled_of(x.args[1]).ends(x.graph.pi)
+        yield linear_terms(x.args[0]), Sampled.of(x.args[1]).ends(x.graph.pi)

@@ -14,7 +14,7 @@ from dataclasses import field, replace
 from itertools import groupby, pairwise
 
 from eomgen.frozen import dataclass
-from eomgen.symbolic.expression import SUMS, Fraction, Node, Number, Scalar, sampled_of
+from eomgen.symbolic.expression import SUMS, Fraction, Node, Number, Sampled, Scalar
 from eomgen.symbolic.print.breaking import OVER, PAPER, TIMES, LinePiece, SetLine
 from eomgen.symbolic.print.layout import (
     TRIGONOMETRIC,
@@ -169,11 +169,11 @@ class Setter:
         if op in ("symbol", "pi"):
             tex = r"\pi" if op == "pi" else self.notation.latex(node.name)
             return Set(tex, TALL if "^" in tex else ATOM)
-        if op == "sampled" and not sampled_of(node.args[1]).called:
-            return Set(self.notation.latex(sampled_of(node.args[1]).name))
+        if op == "sampled" and not Sampled.of(node.args[1]).called:
+            return Set(self.notation.latex(Sampled.of(node.args[1]).name))
         arguments = [self._set[a] if type(a) is Node else _number(a) for a in node.args]
         if op == "sampled":
-            name = sampled_of(node.args[1]).name
+            name = Sampled.of(node.args[1]).name
             tex = self.notation.latex(name.rstrip("'")) + "'" * (len(name) - len(name.rstrip("'")))
             return Set(tex + _in_brackets(arguments[0].tex), ATOM)
         if op == "sqrt":

@@ -10,7 +10,7 @@ import re
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 
-from eomgen.symbolic.expression import Fraction, Node, Number, Scalar, sampled_of
+from eomgen.symbolic.expression import Fraction, Node, Number, Sampled, Scalar
 from eomgen.symbolic.print.layout import (
     TRIGONOMETRIC,
     Factor,
@@ -169,11 +169,11 @@ def _base(node: Node, known: Mapping[Node, Marks]) -> Marks:
     op = node.op
     if op in ("symbol", "pi"):
         return (length_of_name(node.name) if op == "symbol" else 1), ATOM
-    if op == "sampled" and not sampled_of(node.args[1]).called:
-        return length_of_name(sampled_of(node.args[1]).name), ATOM
+    if op == "sampled" and not Sampled.of(node.args[1]).called:
+        return length_of_name(Sampled.of(node.args[1]).name), ATOM
     if op == "sampled":
         inner = known[node.args[0]] if type(node.args[0]) is Node else _number(node.args[0])
-        return length_of_name(sampled_of(node.args[1]).name) + 2 + inner[0], ATOM
+        return length_of_name(Sampled.of(node.args[1]).name) + 2 + inner[0], ATOM
     parts = [known[a] if type(a) is Node else _number(a) for a in node.args]
     inside = sum(marks for marks, _ in parts)
     if op == "sqrt":

@@ -21,10 +21,10 @@ from eomgen.symbolic.expression import (
     Node,
     Number,
     Owner,
+    Sampled,
     Scalar,
     known_to_sympy,
     order,
-    sampled_of,
     selected,
 )
 
@@ -129,7 +129,7 @@ def _summand(sign: int, x: Scalar, made: Mapping[Node, Any]) -> sympy.Expr:
 def _made(x: Node, made: Mapping[Node, Any]) -> Any:
     values = [_value(a, made) for a in x.args]
     if x.op == "sampled":
-        return sampled_of(x.args[1]).chosen(_plain(values[0]), selected, sympy.pi)
+        return Sampled.of(x.args[1]).chosen(_plain(values[0]), selected, sympy.pi)
     if x.op == "select":
         condition, if_true, if_false = values
         return sympy.Piecewise((_plain(if_true), _condition(condition)), (_plain(if_false), True))

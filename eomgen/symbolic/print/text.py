@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable, Mapping, Sequence
 
-from eomgen.symbolic.expression import Node, Scalar, order, sampled_of
+from eomgen.symbolic.expression import Node, Sampled, Scalar, order
 from eomgen.symbolic.print.layout import (
     TRIGONOMETRIC,
     Factor,
@@ -121,7 +121,7 @@ def _base_text(node: Node, printed: Printed, plans: Mapping[Node, list[Product]]
     if node.op in ("symbol", "pi"):
         return (node.name if node.op == "symbol" else "pi"), ATOM
     if node.op == "sampled":
-        sampled, x = sampled_of(node.args[1]), node.args[0]
+        sampled, x = Sampled.of(node.args[1]), node.args[0]
         own = printed[x][0] if type(x) is Node else number_text(x)
         return f"{sampled.name}({own})" if sampled.called else sampled.name, ATOM
     if node.op == "pow":
@@ -164,7 +164,7 @@ def _size(node: Node, sizes: Mapping[Node, int]) -> int:
     if node.op in ("symbol", "pi"):
         return len(node.name) if node.op == "symbol" else 2
     if node.op == "sampled":
-        sampled, x = sampled_of(node.args[1]), node.args[0]
+        sampled, x = Sampled.of(node.args[1]), node.args[0]
         own = sizes[x] if type(x) is Node else number_length(x)
         return len(sampled.name) + (2 + own if sampled.called else 0)
     size = _SIGNS.get(node.op) or len(node.op) + 2 * len(node.args)
