@@ -27,12 +27,13 @@ from eomgen.judge.case import Case
 from eomgen.judge.diagnosis import Mistake, fitting, in_other_units, samples_of
 from eomgen.judge.handwriting import transcript
 from eomgen.judge.judge import Judge
-from eomgen.judge.model_edits import ModelEdit, ModelEdits
+from eomgen.judge.model_edits import EDITED, ModelEdit, ModelEdits, with_leaf
 from eomgen.judge.terms import Products, powers_of
 from eomgen.judge.truth import other_models
 from eomgen.proof.verdicts import verdicts_again
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.text import Expression
 from eomgen.symbolic.numeric.evaluation import NoValue
 from eomgen.symbolic.print.text import to_text
 
@@ -1117,3 +1118,13 @@ outputs.F = "m*(g + s'')"
 def test_what_the_file_calls_an_output_is_right(equation, verdict, up_to):
     found = eomgen.verify(eomgen.loads(DEFINED), equation)
     assert found.verdict == verdict and (up_to is None or up_to in str(found.up_to)), found
+
+
+@each("name", ["pendulum_on_stop", "stick_slip", "spinning_ball", "tower_crane", "four_bar"])
+def test_every_value_of_a_file_can_be_changed_where_it_stands(name):
+    """A formula put back in its place gives the same table: ends of limits and pieces of bodies among them."""
+    model = eomgen.load(Path(__file__).parent.parent / "models" / f"{name}.toml")
+    for leaf in model.leaves(()):
+        if leaf.path[0] in EDITED and isinstance(leaf.value, Expression):
+            table = getattr(model, leaf.path[0])
+            assert with_leaf(table, leaf.path[1:], leaf.value) == table, leaf.path

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 from each import each
+from linear_lines import linear_lines
 from slow_run import in_slow_run, sampled, usual
 
 import eomgen
@@ -474,6 +475,27 @@ def test_what_is_right_to_first_order_alone_is_proven_so(text, equation, right):
     """The difference of the sides falls to a quarter where the distance from the place is halved."""
     result = CliRunner().invoke(main, ["verify", "-", equation, "--to-first-order"], input=text)
     assert result.exit_code == (0 if right else 5) and "certificate: holds" in result.output, result.output
+
+
+LINEAR = ("double_pendulum", "elastic_pendulum", "n_four_bar", "rolling_disc_and_bar", "conker")  # loops among them
+
+
+@pytest.mark.parametrize("name", LINEAR)
+def test_what_linearize_gives_is_right_to_first_order(name):
+    """Each row of M q'' + C q' + K q = 0 about the equilibrium, proven; along the constraints of loops, too."""
+    path = MODELS / f"{name}.toml"
+    for right, _, about in linear_lines(eomgen.linearize(path).as_dict()):
+        result = CliRunner().invoke(main, ["verify", str(path), right, "--to-first-order", "--about", about])
+        assert result.exit_code == 0 and "certificate: holds" in result.output, result.output
+
+
+@in_slow_run
+def test_another_stiffness_of_a_loop_is_wrong_to_first_order():
+    """3 m L^2 a'' - 7/2 m g L (a - pi/2) = 0, with 5/4 of the stiffness."""
+    path = MODELS / "n_four_bar.toml"
+    ((_, wrong, about),) = linear_lines(eomgen.linearize(path).as_dict())
+    found = eomgen.verify(path, wrong, to_first_order=True, about=about)
+    assert found.verdict == "wrong" and "first order" not in found.up_to
 
 
 @pytest.mark.parametrize("option", [[], ["--to-first-order"]])

@@ -195,9 +195,19 @@ class Case:
     @property
     def places_of_rest(self) -> tuple[Mapping[Node, Scalar], ...]:
         """The equilibria that have a closed form."""
-        named = {q.name: q for q in self.system.symbols.q}
+        return self._at_equilibria(self.system.symbols.q)
+
+    @property
+    def multipliers_at_rest(self) -> tuple[Mapping[Node, Scalar], ...]:
+        """The multipliers at each of these equilibria, those that are determined."""
+        return self._at_equilibria(self.system.symbols.lam)
+
+    def _at_equilibria(self, symbols: tuple[Node, ...]) -> tuple[Mapping[Node, Scalar], ...]:
+        named = {x.name: x for x in symbols}
         found = [place.exact for place in self._equilibria if place.is_exact]
-        return tuple({named[q.name]: self.own(x) for q, x in place.items() if q.name in named} for place in found)
+        return tuple(
+            {named[x.name]: self.own(value) for x, value in place.items() if x.name in named} for place in found
+        )
 
     def own(self, x: Scalar) -> Scalar:
         """A scalar of another system of the model over the symbols of this one."""

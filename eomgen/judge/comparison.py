@@ -381,29 +381,55 @@ def first_order_place(
     Accelerations are small beside an equilibrium alone: elsewhere their products with a coordinate are of first order.
 
     Args:
-        about: the place that is meant; None: 0, or an equilibrium.
+        about: the place that is meant, in part: the rest of an equilibrium there, else 0; None: 0, or an equilibrium.
     """
-    symbols, rows = case.system.symbols, case.rows
+    symbols, rows = case.system.symbols, (*case.rows, *case.closing)
     moving = (*symbols.x, *symbols.a)
-    if case.closing or not rows or not depends_on(scalar, symbols.a):
+    if not case.rows or not depends_on(scalar, symbols.a):
         return None
     of_speeds = not is_linear((scalar,), symbols.u)  # who keeps their products approximates nothing
     plain = is_linear((scalar,), moving) or (_bent(rows, moving) and not _bent((scalar,), moving) and not of_speeds)
     if not plain or is_linear(rows, moving):
         return None
-    still = dict.fromkeys(moving, 0)
-    for place in ({}, *case.places_of_rest) if about is None else (about,):
-        beside = {**still, **place}
+    for place in _places(case, about):
+        beside = {**dict.fromkeys((*moving, *symbols.lam), 0), **place}
         with suppress(DerivationError):
             at_rest = all(is_zero_everywhere(case.system, x).holds for x in substituted(rows, beside))
             rests = not at_rest or all(is_zero(x) for x in substituted((scalar,), beside)) or about is not None
-            small = beside if at_rest else {x: beside[x] for x in symbols.x}
-            if _has_a_corner((*rows, scalar), moving, beside):
-                continue  # no first order: the slopes differ from side to side
-            (near,) = linearized((scalar,), small)
-            if rests and depends_on(near, symbols.a) and case.follows(near, linearized(rows, small)).holds:
+            if not rests or _has_a_corner((*rows, scalar), moving, beside):
+                continue  # at a corner the slopes differ from side to side: there is no first order
+            if at_rest and _follows_beside(case, scalar, beside):
+                return {q: beside[q] for q in symbols.q}
+            if not at_rest and not case.closing and _follows_elsewhere(case, scalar, beside):
                 return {q: beside[q] for q in symbols.q}
     return None
+
+
+def _follows_beside(case: Case, scalar: Scalar, place: Mapping[Node, Scalar]) -> bool:
+    """True if a scalar follows to the first order beside an equilibrium, displacements along the constraints."""
+    constraints = case.system.constraints.rows
+    held = [x for row in constraints for x in (row.gap, row.velocity) if x is not None]
+    near, *rows = linearized((scalar, *case.rows, *case.closing, *held), place)
+    own, *others = (linear_row(x, tuple(place))[0] for x in (near, *rows))
+    return depends_on(near, case.system.symbols.a) and combination(case.system, own, others).holds is True
+
+
+def _follows_elsewhere(case: Case, scalar: Scalar, place: Mapping[Node, Scalar]) -> bool:
+    """True if a scalar follows to the first order in coordinates and speeds, beside a place that is no equilibrium."""
+    still = {x: place[x] for x in case.system.symbols.x}
+    (near,) = linearized((scalar,), still)
+    return depends_on(near, case.system.symbols.a) and case.follows(near, linearized(case.rows, still)).holds is True
+
+
+def _places(case: Case, about: Mapping[Node, Scalar] | None) -> Iterator[Mapping[Node, Scalar]]:
+    """The places beside which somebody may have looked; of a place that is named in part, with equilibria there."""
+    at_rest = zip(case.places_of_rest, case.multipliers_at_rest, strict=True)
+    if about is not None:
+        yield from ({**q, **lam} for q, lam in at_rest if all(is_zero(q[x] - value) for x, value in about.items()))
+        yield about
+    else:
+        yield {}
+        yield from ({**q, **lam} for q, lam in at_rest)
 
 
 def is_linear(rows: ScalarRow, moving: tuple[Node, ...]) -> bool:

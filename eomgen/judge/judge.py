@@ -39,6 +39,7 @@ from eomgen.judge.renaming import (
 )
 from eomgen.judge.truth import (
     CONSTANT,
+    EVERY_PIECE,
     IDENTITY,
     SIGNLESS,
     Decided,
@@ -248,17 +249,18 @@ class Judge:
         return replace(parts[-1], given=given if parts[-1] else parts[-1].given, parts=tuple(parts))
 
     def _to_first_order(self, written: HandEquation, found: Verdict) -> Verdict:
-        """A verdict on a wrong equation of motion that is right beside a place: right where that is enough."""
-        if found.verdict != WRONG or found.kind not in ("motion", "acceleration") or self.case.unknown_names(written):
+        """A verdict on a wrong equation of motion, with the place beside which it is right to the first order."""
+        if found.verdict != WRONG or found.kind not in EVERY_PIECE or self.case.unknown_names(written):
             return found
-        place = first_order_place(self.case, self.case.value(written.difference), self.about)
+        up_to = self._first_order(found.kind, self.case.value(written.difference))
+        return replace(found, up_to=up_to) if up_to else found
+
+    def _first_order(self, kind: str, scalar: Scalar) -> str:
+        """The words for the place beside which an equation of motion is right to the first order; "" for none."""
+        place = first_order_place(self.case, scalar, self.about) if kind in EVERY_PIECE else None
         if place is None:
-            return found
-        beside = ", ".join(f"{q.name} = {readable_text(x)}" for q, x in place.items())
-        up_to = f"{FIRST_ORDER} about {beside}"
-        return (
-            replace(found, up_to=up_to) if not self.to_first_order else Verdict(written.given, found.kind, RIGHT, up_to)
-        )
+            return ""
+        return f"{FIRST_ORDER} about {', '.join(f'{q.name} = {readable_text(x)}' for q, x in place.items())}"
 
     def _of_matrix(self, given: str, letter: str, rows: list[list[str]]) -> Verdict:
         """The verdict on a matrix of the small motions, M, C and K entry by entry.
@@ -499,12 +501,14 @@ class Judge:
             return Verdict(written.given, kind, RIGHT, with_reactions_of_zero(case, written, kind, found.up_to))
         if found.holds is None:
             return Verdict(written.given, kind, UNDECIDED, reason=found.up_to or "no state of the model decides it")
+        if self.to_first_order and (up_to := self._first_order(kind, scalar)):
+            return Verdict(written.given, kind, RIGHT, up_to)
         solved: dict[str, Scalar] = {}
         with suppress(DerivationError):
             unknowns = case.system.symbols.unknowns if written.calls else {}
             solved = {name: case.solved(x) for name, x in unknowns.items() if depends_on(scalar, (x,))}
         wrong = self._wrong(written, kind, case.value(written.difference, solved) if solved else scalar, solved)
-        return replace(wrong, up_to=in_its_piece(case, scalar)) if kind in ("motion", "acceleration") else wrong
+        return replace(wrong, up_to=in_its_piece(case, scalar)) if kind in EVERY_PIECE else wrong
 
     def _course(self, written: HandEquation, constants: Meanings | None = None) -> Verdict | None:
         """Verdict on a coordinate as a function of time; None: it is something else."""

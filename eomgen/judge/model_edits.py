@@ -146,7 +146,7 @@ class _Editor:
         table, name = str(leaf.path[0]), str(leaf.path[1])
         of = {"bodies": {"body": name}, "forces": {"force": name}}.get(table, {})
         with suppress(EomgenError):
-            changed = _with_leaf(getattr(self.model, table), leaf.path[1:], value)
+            changed = with_leaf(getattr(self.model, table), leaf.path[1:], value)
             yield self._edit(kind, text, rank, **of, **{table: changed})
 
     # -- formulas ------------------------------------------------------------------------------------
@@ -290,22 +290,22 @@ def _formula(x: Scalar) -> Expression:
     return parse(text, longest=len(text) + 1, references=True)
 
 
-def _with_leaf(part: Any, path: Sequence[Any], value: Any) -> Any:
+def with_leaf(part: Any, path: Sequence[Any], value: Any) -> Any:
     """A table or a part with another value at a path of the file."""
     if not path:
         return (value,) if isinstance(part, tuple) else value
     key, *rest = path
     if isinstance(part, tuple) and not isinstance(key, int):  # one table in the place of a list of them
-        return (_with_leaf(part[0], path, value),)
+        return (with_leaf(part[0], path, value),)
     if isinstance(part, tuple):
-        return (*part[:key], _with_leaf(part[key], rest, value), *part[key + 1 :])
+        return (*part[:key], with_leaf(part[key], rest, value), *part[key + 1 :])
     if isinstance(part, Table):
-        return Table({**part, key: _with_leaf(part[key], rest, value)})
+        return Table({**part, key: with_leaf(part[key], rest, value)})
     for slot in type(part).slots():
         inner = getattr(part, slot.name)
         if slot.key == key:
-            return replace(part, **{slot.name: _with_leaf(inner, rest, value)})
+            return replace(part, **{slot.name: with_leaf(inner, rest, value)})
         if slot.inline and inner is not None:
             with suppress(KeyError):
-                return replace(part, **{slot.name: _with_leaf(inner, path, value)})
+                return replace(part, **{slot.name: with_leaf(inner, path, value)})
     raise KeyError(key)

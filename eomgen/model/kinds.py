@@ -28,7 +28,7 @@ from eomgen.model.fields import (
     TextRule,
     VectorRule,
 )
-from eomgen.model.part import Part, PartRule
+from eomgen.model.part import Part, PartRule, Slot
 from eomgen.model.positions import DocumentPath
 from eomgen.model.sampled_laws import TimeLawRule
 from eomgen.symbolic.expression import Expression, Sampled
@@ -385,6 +385,11 @@ class Limits:
     low: Expression | None = None
     high: Expression | None = None
     in_si: bool = False
+
+    @classmethod
+    def slots(cls) -> tuple[Slot, ...]:
+        """Its two values, by their places in the list of the file."""
+        return tuple(Slot(name, k, None, False, False, None) for k, name in enumerate(("low", "high")))
 
 
 @dataclass(frozen=True)

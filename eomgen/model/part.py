@@ -24,7 +24,7 @@ class Slot:
 
     Args:
         name: the attribute in Python.
-        key: the key in the file (`from` for the attribute `from_`).
+        key: the key in the file (`from` for the attribute `from_`), or the place in a list.
         rule: what its value may be.
         required: it has no default.
         inline: its keys stand among the keys of the part itself.
@@ -32,7 +32,7 @@ class Slot:
     """
 
     name: str
-    key: str
+    key: str | int
     rule: Any
     required: bool
     inline: bool

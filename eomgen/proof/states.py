@@ -217,8 +217,12 @@ def _shaken(system: System, state: State, spread: float, rng: Random) -> State:
     symbols = system.symbols
     shifted = {x: state[x] + fifty_digits().number(rng.uniform(-spread, spread)) for x in symbols.x}
     shifted[symbols.t] = state[symbols.t] + fifty_digits().number(rng.uniform(0, spread))
-    state = state | shifted
-    state |= system.scope.on_unit_norms(state)
+    return closed_near(system, state | shifted)
+
+
+def closed_near(system: System, state: State) -> State:
+    """The state near another one at which the constraints hold; itself where none is found."""
+    state = state | system.scope.on_unit_norms(state)
     if all(row.identical for row in system.constraints.rows):
         return state
     return Closure(system.constraints).closed(state, system.constraints.movable) or state

@@ -31,6 +31,7 @@ from eomgen.proof.at_a_state import NumericState, state_in_numbers
 from eomgen.proof.check import Check, Tally
 from eomgen.proof.in_numbers import STEP
 from eomgen.proof.instant import NearbyStates
+from eomgen.proof.states import closed_near, refuse_open
 from eomgen.proof.trials import Trials
 from eomgen.symbolic.expression import SLOPE, Call, Expression, Fraction, Node, Scalar, parse
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
@@ -252,11 +253,13 @@ class _Again:
 
 
 def _beside(base: NumericState, at: Mapping[str, Rounded], way: Mapping[Node, float], part: float) -> NumericState:
-    """The state that lies a part of a way from a place at rest."""
+    """The state that lies a part of a way from a place at rest, where the constraints hold."""
+    equations, system = base.equations, base.equations.system
     start = {x: at[x.name].value if x.name in at else 0.0 for x in way}
-    t = base.equations.symbols.t
-    numbers = {t: base.numbers[t]} | {x: start[x] + part * step for x, step in way.items()}
-    return NumericState(base.equations, base.parameters, numbers)
+    numbers = {system.symbols.t: base.numbers[system.symbols.t]} | {x: start[x] + part * way[x] for x in way}
+    values = closed_near(system, NumericState(equations, base.parameters, numbers).values)
+    refuse_open(system, values)
+    return NumericState(equations, base.parameters, {x: float(values[x]) for x in numbers})
 
 
 def _runge_kutta(

@@ -20,6 +20,7 @@ from typing import Any
 
 from click.testing import CliRunner
 from compare import filled, quiet
+from linear_lines import linear_lines
 from refusals import lacking
 
 import eomgen
@@ -248,6 +249,26 @@ def judged(text: str, rng: Random) -> Iterator[Outcome]:
         yield Outcome("verify", 1, "", str(no).splitlines()[0][:200], spent(), "unread: the page")
     except Exception as error:
         yield Outcome("verify", 70, "internal error", f"{type(error).__name__}: {str(error)[:240]}")
+
+
+def small_motions_judged(text: str) -> Iterator[Outcome]:
+    """`verify` of the linearized equations: right to the first order, and wrong with another stiffness, with proof."""
+    try:
+        with quiet(), limit(SECONDS):
+            lines = list(linear_lines(eomgen.linearize(eomgen.loads(text)).as_dict()))
+    except (TooLong, eomgen.EomgenError):
+        return  # told by `linearize`
+    for right, wrong, about in lines[:1]:
+        for equation, code in ((right, 0), (wrong, 5)):
+            words = ["verify", "-", equation, "--to-first-order", "--about", about, "--json"]
+            begin = time.process_time()
+            with quiet():
+                result = CliRunner().invoke(main, words, input=text)
+            spent = time.process_time() - begin
+            fault, detail = ("", "") if result.exit_code == code else _fault(words, result)
+            if not fault and result.exit_code != code and '"undecided"' not in result.stdout:
+                fault, detail = "judged wrong", f"exit {result.exit_code}: {equation[:200]}, about {about}"
+            yield Outcome("verify --to-first-order", result.exit_code, fault, detail, spent)
 
 
 PYTHON: dict[str, Callable[[Any], Any]] = {

@@ -22,7 +22,7 @@ from random import Random
 from typing import Any
 
 HERE = Path(__file__).parent
-sys.path[:0] = [str(HERE), str(HERE.parents[1])]
+sys.path[:0] = [str(HERE), str(HERE.parent / "helpers"), str(HERE.parents[1])]
 os.environ.setdefault("EOMGEN_FRESH", "1")
 os.environ.setdefault("EOMGEN_PATIENCE", "none")
 
@@ -95,6 +95,7 @@ def _of_model(text: str, levels: dict[str, str], seed: int, through_verbs: bool)
         outcomes += calls.by_python(text, calls.python_doors(rng))
         if not row["refused"] and rng.random() < 0.3:
             outcomes += calls.judged(text, rng)
+            outcomes += calls.small_motions_judged(text)
     row["calls"] += [[o.call, o.code, round(o.seconds, 2), o.note] for o in outcomes]
     row["faults"] += [[o.fault, f"{o.call}: {o.detail}"] for o in outcomes if o.fault]
     row["covers"] = not row["refused"]
