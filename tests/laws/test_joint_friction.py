@@ -316,14 +316,43 @@ def test_statics_gives_the_range_of_rest():
     (found,) = ranges(HINGE.replace("start = 1 ", "start = 0.1 ").replace("T_c = 1", "T_c = 2"))
     assert found["high"] == pytest.approx(math.asin(4 / G), abs=1e-12)
     assert ranges(RAMP.replace("speed = -1", "speed = 0")) == [
-        {"name": "s", "low": None, "high": None, "condition": "tan(alpha) <= mu_s"}
+        {"name": "s", "low": None, "high": None, "condition": "tan(alpha) <= mu_s", "nowhere": False}
     ]
 
 
 def test_statics_names_a_joint_that_cannot_hold():
     found = eomgen.statics(eomgen.loads(HINGE))
     assert found.broken == ("the joint 'rod' slides: it would need more friction than it can have",)
-    assert ranges(HINGE)[0]["high"] is None
+    assert ranges(HINGE)[0]["high"] == pytest.approx(math.asin(2 / G), abs=1e-12)
+
+
+SPRING = """
+eomgen = 1
+space = "plane"
+parameters = { m = 10, k = 500, mu = 0.25, al = { value = 20, unit = "deg" }, g = 9.81 }
+coordinates = { s = { start = 0, unit = "cm" } }
+forces.weight = { kind = "gravity", acceleration = [0, "-g"] }
+[bodies.block]
+mass = "m"
+[bodies.block.joint]
+kind = "prismatic"
+axis = ["cos(al)", "sin(al)"]
+displacement = "s"
+stiffness = "k"
+friction = { coefficient = "mu" }
+"""
+
+
+def test_the_range_of_rest_beside_a_start_that_slides():
+    """-m g (sin al + mu cos al) <= k s <= -m g (sin al - mu cos al); without a spring it rests nowhere."""
+    al, W = math.radians(20), 10 * G
+    (found,) = ranges(SPRING)
+    ends = [-W * (math.sin(al) + sign * 0.25 * math.cos(al)) / 500 for sign in (1, -1)]
+    assert (found["low"], found["high"]) == pytest.approx(tuple(ends), abs=1e-12)
+    printed = str(eomgen.statics(eomgen.loads(SPRING)).render("text"))
+    assert f"{100 * ends[0]:.10g} cm" in printed and f"{100 * ends[1]:.10g} cm" in printed
+    (found,) = ranges(SPRING.replace('"k"', "0").replace(" k = 500,", ""))
+    assert (found["low"], found["high"], found["nowhere"]) == (None, None, True)
 
 
 def test_each_variable_of_a_sleeve_sticks_by_itself():

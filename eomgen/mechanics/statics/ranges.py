@@ -50,12 +50,14 @@ class RestRange:
         name: of a coordinate; of a contact, in a structure without coordinates.
         low, high: of the coordinate, in SI; of the contact's friction. None: no limit, or no values.
         condition: as formulas.
+        nowhere: True if no place of the coordinate is one of rest while the others stand as they do.
     """
 
     name: str
     low: float | None
     high: float | None
     condition: str
+    nowhere: bool = False
 
 
 def ranges_of_rest(system: System) -> tuple[RestRange, ...]:
@@ -148,7 +150,10 @@ def _of_contact(system: System, condition: StickCondition, words: str) -> RestRa
 def _of_coordinate(
     system: System, q: Node, conditions: Sequence[StickCondition], words: Mapping[str, str]
 ) -> RestRange:
-    """The range of a coordinate around its start, the others as they start, in which the conditions hold."""
+    """The range of a coordinate in which the conditions hold, the others as they start.
+
+    It is that around its start, of a start that moves off the nearest one.
+    """
     mine = [c for c in conditions if depends_on(c.ratio, (q,)) or depends_on(c.most, (q,))] or list(conditions)
     said = " and ".join(dict.fromkeys(words[c.contact] for c in mine))
     starts = {node: _number(system, x, {}) for node, x in system.scope.start_values().items()}
@@ -161,23 +166,30 @@ def _of_coordinate(
         found = [_number(system, each, {**here, q: x}) for each in margins]
         return math.nan if any(each is None for each in found) else min(each for each in found if each is not None)
 
-    begun = margin(here[q])
-    if math.isnan(begun) or begun < -tolerances.COMPUTED:
+    if math.isnan(margin(here[q])):
         return RestRange(q.name, None, None, said)
     joints = (body.joint for body in system.scope.model.bodies.values() if body.joint is not None)
-    turns = any(q.name in angle.names for joint in joints for angle in joint.turns())
-    ends = [_end(margin, here[q], sense, turns=turns) for sense in (-1, 1)]
+    ways = _ways(turns=any(q.name in angle.names for joint in joints for angle in joint.turns()))
+    outwards = (here[q] + sense * way for way in (0.0, *ways) for sense in (-1, 1))
+    inside = next((x for x in outwards if margin(x) >= -tolerances.COMPUTED), None)
+    if inside is None:
+        return RestRange(q.name, None, None, said, nowhere=True)
+    ends = [_end(margin, inside, [sense * way for way in ways]) for sense in (-1, 1)]
     return RestRange(q.name, ends[0], ends[1], said)
 
 
-def _end(margin: Callable[[float], float], start: float, sense: int, *, turns: bool) -> float | None:
+def _ways(*, turns: bool) -> list[float]:
+    """Distances at which places are tried, ascending: of an angle up to half a turn."""
+    if turns:
+        return [math.pi * k / STEPS for k in range(1, STEPS + 1)]
+    return [FURTHEST ** (2 * k / STEPS - 1) for k in range(STEPS + 1)]
+
+
+def _end(margin: Callable[[float], float], start: float, ways: Sequence[float]) -> float | None:
     """The place where the margin becomes negative on the way from the start; None where it stays."""
-    ways = [math.pi * k / STEPS for k in range(1, STEPS + 1)]
-    if not turns:
-        ways = [FURTHEST ** (2 * k / STEPS - 1) for k in range(STEPS + 1)]
     inside = start
     for way in ways:
-        outside = start + sense * way
+        outside = start + way
         if margin(outside) < 0:
             for _ in range(100):
                 middle = (inside + outside) / 2

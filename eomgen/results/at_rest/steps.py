@@ -316,15 +316,19 @@ def ranges_step(statics: StaticReactions) -> tuple[Step, ...]:
     """Step with the limits of impending motion, where dry friction holds."""
     if not statics.ranges:
         return ()
-    rows = tuple((each.name, _limit(each.low), _limit(each.high), each.condition) for each in statics.ranges)
+    own_unit = statics.system.scope.model.in_own_unit
+
+    def end(name: str, value: float | None) -> Cell:
+        return "" if value is None else own_unit(name, value, 10)
+
+    rows = tuple(
+        (each.name, "nowhere" if each.nowhere else end(each.name, each.low), end(each.name, each.high), each.condition)
+        for each in statics.ranges
+    )
     words = prose(
         "Dry friction keeps it at rest between these limits, the others as they stand; from them on it moves:"
     )
     return (Step("rest range", "Range of rest", (words, Grid(("of", "from", "to", "while"), rows))),)
-
-
-def _limit(value: float | None) -> Cell:
-    return "" if value is None else f"{value:.10g}"
 
 
 def _or_open(value: Scalar | None) -> Cell:
