@@ -71,7 +71,7 @@ def of_output(case: Case, written: HandEquation, at: Instant) -> Verdict | None:
         return _measured(case, written, number, output)
     if output is None or output.at is None or output.event is not None:
         return None
-    placed = case if output.from_ != "rest" else replace(case, at_rest=True)
+    placed = replace(case, at_rest=case.at_rest or output.from_ == "rest", side=output.side)
     meant = replace(written, left=output.value)
     return requested(placed, meant, kind_of_equation(meant, case.model), output.at)
 
@@ -204,7 +204,7 @@ def _by_numbers(case: Case, written: HandEquation, kind: str, at: Instant) -> Ve
     for shares in ((1.07, 0.95, 1.02), (0.94, 1.05, 0.99)):
         values = {n: float(x) * shares[k % 3] * (1 + k / 300) for k, (n, x) in enumerate(own.items())}
         try:
-            left, right = Case(with_values(case.model, values).model, case.at_rest).sides(written, at)
+            left, right = replace(case, model=with_values(case.model, values).model).sides(written, at)
         except EomgenError:
             continue
         if left.value is None or right.value is None:

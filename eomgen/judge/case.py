@@ -50,11 +50,13 @@ class Case:
         model: the model.
         at_rest: its motion starts with all speeds 0.
         begun: contacts slide as they do just after the start: the sign of what slides is a number.
+        side: "after": equations about an instant are about what is just after it, where a quantity jumps.
     """
 
     model: Model
     at_rest: bool = False
     begun: bool = False
+    side: str | None = None
 
     @cached_property
     def phase(self) -> Study:
@@ -464,8 +466,8 @@ class Case:
         """
         from_ = "rest" if self.at_rest and isinstance(at, WrittenEquation) else None
         requested = {
-            "left": Output(value=written.left, at=at, from_=from_),
-            "right": Output(value=written.right, at=at, from_=from_),
+            name: Output(value=value, at=at, from_=from_, side=self.side if isinstance(at, WrittenEquation) else None)
+            for name, value in (("left", written.left), ("right", written.right))
         }
         found = solve(_asking(self.model, requested))
         return found["left"], found["right"]
