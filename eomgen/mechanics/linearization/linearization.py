@@ -512,11 +512,14 @@ def refuse_corners(
                 for name, factor, _ in SystemFriction(first.system).named
                 if _cornered((factor,))
             ]
+            rates = zip(symbols.z, first.equations.state_rates, strict=True)
+            rough += [f"the rate of '{z.name}'" for z, rate in rates if _cornered((rate,))]
             named = [*filter(None, [first.system.loads.acting(_cornered)]), *dict.fromkeys(rough)]
+            dry = any(contact.size is not None for contact in first.system.scope.model.rough_contacts)
             raise DerivationError(
                 f"{' and '.join(named) or 'the forces'}: a corner or a jump at the place of reference",
                 "linearize",
-                "choose a place near it, or forces that are smooth there",
+                "choose a place near it, or forces that are smooth there" + ", as dry friction with `smooth`" * dry,
             )
 
 
