@@ -117,9 +117,9 @@ class _Seen:
         return self.model.functions.slacks(self.track[1])[:, self.model.loose.index(contact.name)]
 
     def _size(self, what: str) -> float:
-        places = self.model.functions.places
+        n, k = self.model.functions.places, len(self.model.equations.symbols.u)
         x = self.track[1]
-        return max(1.0, float(np.max(np.abs(x[:, :places] if what == "places" else x[:, places:]), initial=0.0)))
+        return max(1.0, float(np.max(np.abs(x[:, :n] if what == "places" else x[:, n : n + k]), initial=0.0)))
 
     @cached_property
     def _columns(self) -> tuple[tuple[str, ...], np.ndarray]:

@@ -315,10 +315,10 @@ class ContactSignals:
 
     def floors(self, t: float, x: np.ndarray) -> np.ndarray:
         """Rounding error of each bound at one state; a speed may pass 0 by as much as counts as stopped."""
-        n = self.functions.places
+        n, k = self.functions.places, len(self.functions.equations.symbols.u)
         if not self.watch.bounds:
             return np.zeros(0)
-        places, rates = np.max(np.abs(x[:n]), initial=1.0), np.max(np.abs(x[n:]), initial=1.0)
+        places, rates = np.max(np.abs(x[:n]), initial=1.0), np.max(np.abs(x[n : n + k]), initial=1.0)
         rebounding = {contact.name for contact in self.watch.contacts if contact.restitution is not None}
         size = {
             "force": tolerances.COMPUTED * self.sizes(t, x)[0],

@@ -165,7 +165,7 @@ def _closed_or_open(
             raise
     _, free = values(models.ends)
     _refuse_overlap(models, t, free)
-    away = tuple(name for name, (gap, rate) in models.without_contacts.gaps(t, free).items() if _apart(gap, rate, free))
+    away = tuple(name for name, (gap, rate) in models.without_contacts.gaps(t, free).items() if _apart(models, gap, rate, free))
     return values(away), away
 
 
@@ -175,18 +175,18 @@ def plain(model: Model, pieces: Mapping[str, int], away: Sequence[str]) -> Confi
     return Configuration(Table({c.name: ContactMode(closed=c.name not in away) for c in contacts}), Table(pieces))
 
 
-def _apart(gap: float, rate: float, values: Values) -> bool:
-    return gap > _length(values) or abs(rate) > smallest_speed(values)
+def _apart(models: PhaseModels, gap: float, rate: float, values: Values) -> bool:
+    return gap > _length(models, values) or abs(rate) > smallest_speed(values)
 
 
-def _length(values: Values) -> float:
-    return 1e2 * tolerances.COMPUTED * size_of_places(values)
+def _length(models: PhaseModels, values: Values) -> float:
+    return 1e2 * tolerances.COMPUTED * size_of_places(values, models.model)
 
 
 def _refuse_overlap(models: PhaseModels, t: float, values: Values) -> None:
     contacts = {contact.name: contact for contact in models.model.contacts}
     for name, (gap, _) in models.without_contacts.gaps(t, values).items():
-        if gap < -_length(values):
+        if gap < -_length(models, values):
             what = "is too short" if contacts[name].pulls else "is passed through"
             unit = models.model.constraints[name].gap_unit(models.model.bodies)
             raise DerivationError(
@@ -202,7 +202,7 @@ def _piece_at(models: PhaseModels, body: str, t: float, values: Values) -> int:
     link, value = phase.system.motion.link(body), phase.system.scope.value
     requested = (link.s[0], link.s_rate[0], *(value(end) for _, end in bounds_of(models.model, body)[:-1]))
     s, rate, *ends = phase.functions.evaluated(np.array([t]), phase.state(values)[None, :], requested)[0]
-    close = _length(values)
+    close = _length(models, values)
     return sum(s > end - close if rate > 0 else s > end + close for end in ends)
 
 
@@ -253,7 +253,7 @@ def _lowest_flights(models: PhaseModels, here: PhaseStart, without: Mapping[str,
     leaving = [name for name in touched if name not in without]
     if not leaving:
         return {}
-    phase, scale = models.of(here.configuration), size_of_places(here.values)
+    phase, scale = models.of(here.configuration), size_of_places(here.values, models.model)
     seen = phase.signals.look(here.t, phase.state(here.values))
     found = {}
     for name in leaving:
@@ -278,8 +278,8 @@ def _contact(
     if not before.open:
         return values, frozenset(), None
     gaps, rebounding = models.without_contacts.gaps(t, values), models.without_contacts.restitutions
-    close = {name: _length(values) for name in gaps}
-    close |= dict.fromkeys(rebounding, tolerances.LOWEST_FLIGHT * size_of_places(values))
+    close = dict.fromkeys(gaps, _length(models, values))
+    close |= dict.fromkeys(rebounding, tolerances.LOWEST_FLIGHT * size_of_places(values, models.model))
     touching = [name for name, (gap, _) in gaps.items() if name not in before.open or gap <= close[name]]
     hit: Impact | None = None
     if any(gaps[name][1] < -smallest_speed(values) for name in touching if name in before.open):

@@ -24,7 +24,7 @@ from eomgen.mechanics.dynamics import (
 from eomgen.mechanics.free_bodies import Reactions, SystemFriction, equations_of_motion
 from eomgen.mechanics.kinematics import Motion, SystemScene
 from eomgen.mechanics.start import Start
-from eomgen.model import Contact, Edge
+from eomgen.model import Contact, Edge, Model
 from eomgen.simulation.constraint_drift import (
     EnergyLevel,
     Nearness,
@@ -337,9 +337,9 @@ def smallest_speed(values: Values) -> float:
     return tolerances.COMPUTED * max([1.0, *(abs(v) for name, v in values.items() if name.endswith("'"))])
 
 
-def size_of_places(values: Values) -> float:
-    """Size of the coordinates, at least 1."""
-    return max([1.0, *(abs(v) for name, v in values.items() if not name.endswith("'"))])
+def size_of_places(values: Values, model: Model) -> float:
+    """Size of the coordinates, at least 1; speeds and states of first order have other units."""
+    return max([1.0, *(abs(v) for name, v in values.items() if name in model.coordinates)])
 
 
 # -------- slopes ----------------------------------------------------------------------------------------------

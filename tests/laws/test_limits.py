@@ -291,3 +291,31 @@ def test_a_stop_between_what_is_driven_and_what_is_free_is_a_contact():
     first = run(PAWL, 0.1).impacts[0]
     assert first.t == pytest.approx(t, rel=1e-9)
     assert first.impulses["pawl_low"] == pytest.approx(0.05 * 1.5 * (4.8 * math.cos(6 * t) + 3 - 20 * t), rel=1e-9)
+
+
+PISTON = """
+eomgen = 1
+space = "plane"
+coordinates = { x = { start = 0.2 } }
+states = { p = { start = 30, unit = "bar", rate = "0" } }
+[bodies.piston]
+mass = 2
+[bodies.piston.joint]
+kind = "prismatic"
+axis = [1, 0]
+displacement = "x"
+force = "p*1e-6 - 23"
+limits = [0, 0.25]
+restitution = 0.5
+friction = { force = 4 }
+"""
+
+
+def test_the_size_of_a_state_is_no_length():
+    """A pressure of 3e6 Pa: x'' = -(20 - 4)/2 from 0.2 m, at 0 x' = -e x', then x'' = -12; also from 0 and 0.25 m."""
+    result = run(PISTON, 0.3)
+    first = result.impacts[0]
+    assert (first.t, first.impulses["piston_low"]) == pytest.approx((math.sqrt(0.05), 3 * math.sqrt(3.2)), rel=1e-9)
+    assert result.phases[1].end - first.t == pytest.approx(0.5 * math.sqrt(3.2) / 12, rel=1e-6)
+    assert run(PISTON, 0.1, start={"x": 0})["x"][-1] == pytest.approx(0, abs=1e-9)
+    assert run(PISTON, 0.1, start={"x": 0.25})["x"][-1] == pytest.approx(0.25 - 8 * 0.005, rel=1e-9)
