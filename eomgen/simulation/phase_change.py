@@ -165,7 +165,9 @@ def _closed_or_open(
             raise
     _, free = values(models.ends)
     _refuse_overlap(models, t, free)
-    away = tuple(name for name, (gap, rate) in models.without_contacts.gaps(t, free).items() if _apart(models, gap, rate, free))
+    away = tuple(
+        name for name, (gap, rate) in models.without_contacts.gaps(t, free).items() if _apart(models, gap, rate, free)
+    )
     return values(away), away
 
 
