@@ -501,7 +501,7 @@ def reading(path: str) -> Iterator[Source]:
 
 def _followed(declared: Model, follow: tuple[str, ...]) -> Model:
     """The model, coordinates and inputs through the samples of files."""
-    from eomgen.verbs import following
+    from eomgen.model import following
 
     return following(declared, follow) if follow else declared
 

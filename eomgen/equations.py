@@ -12,7 +12,9 @@ import numpy as np
 from eomgen.codegen import Program, RightHandSide, parameter_vector
 from eomgen.documents import (
     Document,
+    Grid,
     Result,
+    Step,
     Texts,
     assumption_steps,
     derivation_of,
@@ -54,6 +56,7 @@ FEW = 200  # operations of a matrix that a person reads
 
 
 SHOWN = 6  # coordinates of a line
+HEADS = {"names": "name", "equations": "equation of motion along", "reactions": "reaction", "outputs": "output"}
 
 
 @dataclass(frozen=True, repr=False)
@@ -385,11 +388,20 @@ class Equations(Result):
         return replace(derivation, steps=(*assumption_steps(self.assumptions), *derivation.steps))
 
     @doing("the derivation, step by step")
-    def written(self, *, full: bool) -> Document:
-        """The document; `full`: everything is printed, however long."""
-        if not full:
-            return replace(self.derivation, entries=self.entries)
-        return replace(self._derivation(full=True), entries=self.entries)
+    def written(self, *, full: bool, units: bool = False) -> Document:
+        """The document.
+
+        Args:
+            full: everything is printed, however long.
+            units: those of names, equations, reactions and outputs too, for people and for machines.
+        """
+        document = self._derivation(full=True) if full else self.derivation
+        if not units:
+            return replace(document, entries=self.entries)
+        found = self.study.units
+        grids = tuple(Grid((HEADS[key], "unit"), tuple(found[key].items())) for key in HEADS if found[key])
+        steps = (*document.steps, Step("units", "Units", grids))
+        return replace(document, steps=steps, entries=lambda: {**self.entries(), "units": found})
 
     def entries(self) -> dict[str, Any]:
         """The fields of the JSON of `derive --json`."""

@@ -20,6 +20,7 @@ from eomgen.cli import main
 from eomgen.codegen.build import compiler
 from eomgen.errors import ModelError, UsageError
 from eomgen.model.likely_mistakes import warnings_of
+from eomgen.model.replaced import following
 from eomgen.model.sampled_laws import samples
 from eomgen.simulation.solvers import METHODS
 from eomgen.symbolic.expression.graph import Graph
@@ -27,7 +28,6 @@ from eomgen.symbolic.expression.splines import Sampled, number_of_sampled, splin
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate, fifty_digits
 from eomgen.symbolic.print.sympy_form import to_sympy
 from eomgen.symbolic.print.text import to_text
-from eomgen.verbs.csv_inputs import following
 
 pytestmark = pytest.mark.slow
 

@@ -287,7 +287,7 @@ def test_a_start_without_a_closed_form_serves_by_its_numbers():
         ).replace('"a.center"] }', '"a.center"], length = 1 }')
     )
     case = Case(model)
-    assert not case.starting.is_exact and case.start
+    assert not case.starts_exactly and case.start
     state = {x.name: float(v) for x, v in case.start.items()}
     energy = 0.5 * (state["x'"] ** 2 + state["y'"] ** 2) + 10 * state["y"]
     assert eomgen.verify(model, f"kinetic_energy() + 10*y = {energy:.15g}").verdict == "right"

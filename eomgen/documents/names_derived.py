@@ -326,8 +326,9 @@ def _component(name: str, study: Study, whole: System) -> Scalar:
     return study.reactions.value(names.index(name))
 
 
-def found_reaction(balance: Balance, named: NamedReaction, answer: Quantity) -> Found:
+def found_reaction(system: System, named: NamedReaction, answer: Quantity) -> Found:
     """A reaction that an output names, with its meaning in words and its letter."""
+    balance = Balance.of(system)
     return Found(named.name, answer, said(balance, named), _letter_of(balance, named))
 
 

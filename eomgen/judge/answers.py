@@ -28,7 +28,6 @@ from eomgen.judge.verdict import RIGHT, UNDECIDED, WRONG, Cause, Verdict, causes
 from eomgen.judge.written_pages import WrittenNumber
 from eomgen.model import Output, Unit, with_values
 from eomgen.questions import Answer
-from eomgen.symbolic.exact import simplest
 from eomgen.symbolic.expression import (
     Expression,
     Node,
@@ -40,7 +39,7 @@ from eomgen.symbolic.expression import (
     parse,
     substituted,
 )
-from eomgen.symbolic.numeric import Work, tolerances
+from eomgen.symbolic.numeric import tolerances
 from eomgen.symbolic.print import to_text
 
 ROUNDED = 1.000001  # of half of the last digit: a number that was rounded lies within
@@ -326,7 +325,7 @@ def _causes_of_state(case: Case, z: Node, declared: Scalar, apart: Scalar) -> It
                 shown = short_text(term, positive)
                 yield Cause(kind, f"the term {shown} of {quantity} {what}", term=shown, quantity=quantity)
     for term in terms:
-        ratio = simplest(over(apart, term), Work.VALUE, positive)
+        (ratio,) = case.edits.written((over(apart, term),))
         if type(ratio) is not Node:
             shown, words = short_text(term, positive), f"has the factor {to_text(ratio + 1)}"
             yield Cause("factor", f"the term {shown} of {quantity} {words}", term=shown, quantity=quantity)

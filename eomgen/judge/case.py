@@ -15,10 +15,8 @@ from eomgen.judge.mistakes import Mistakes
 from eomgen.judge.model_edits import ModelEdit, edited_models
 from eomgen.judge.reading import DERIVED, MULTIPLIER, HandEquation, Reading, side_value
 from eomgen.judge.terms import Edits
-from eomgen.mechanics.dynamics import Contributions, EquationsOfMotion, Extent, System
-from eomgen.mechanics.equilibrium import Equilibrium
+from eomgen.mechanics.dynamics import Contributions, Extent, System
 from eomgen.mechanics.instant import Quantities
-from eomgen.mechanics.start import ExactStart
 from eomgen.model import AtRest, Model, Output, Table, WrittenEquation
 from eomgen.questions import Answer, solve
 from eomgen.study import MotionFromStart, Study, study_of
@@ -33,11 +31,9 @@ from eomgen.symbolic.expression import (
     depends_on,
     derivative,
     gradient,
-    inner,
     is_zero,
     parse,
     substituted,
-    tidy,
 )
 from eomgen.symbolic.print import to_text
 
@@ -75,22 +71,23 @@ class Case:
         return self.phase.system
 
     @property
-    def starting(self) -> ExactStart:
-        """The start that every verb takes."""
-        return self.phase.start_of(at_rest=self.at_rest)
-
-    @property
     def start(self) -> Mapping[Node, Scalar]:
         """t, q and u at the start as scalars of the parameters, numbers without a closed form; {}: it is not known."""
-        return self.starting.values
+        return self.phase.start_of(at_rest=self.at_rest).values
+
+    @property
+    def starts_exactly(self) -> bool:
+        """True if the start has a closed form."""
+        return self.phase.start_of(at_rest=self.at_rest).is_exact
 
     def starts_at_zero(self, *scalars: Scalar) -> bool | None:
         """True if scalars are 0 at the start, in numbers where it has no closed form; None: the start is not known."""
         if not self.start:
             return None
-        if self.starting.is_exact:
+        if self.starts_exactly:
             return is_zero_everywhere(self.system, *substituted(scalars, self.start)).holds
-        return vanish_at(scalars, {**self.system.scope.known_parameters, **self.starting.numbers})
+        numbers = self.phase.start_of(at_rest=self.at_rest).numbers
+        return vanish_at(scalars, {**self.system.scope.known_parameters, **numbers})
 
     def put_into_rate(
         self, name: str, x: Scalar, values: Mapping[Node, Scalar]
@@ -159,7 +156,8 @@ class Case:
         constraints, symbols = self.system.constraints, self.system.symbols
         found = []
         for unknowns, bias in ((symbols.u, constraints.sigma), (symbols.a, constraints.gamma)):
-            found.append(tuple(inner(J, unknowns) + b for J, b in zip(constraints.J, bias, strict=True)))
+            rows = (sum((x * y for x, y in zip(J, unknowns, strict=True)), start=0) for J in constraints.J)
+            found.append(tuple(x + b for x, b in zip(rows, bias, strict=True)))
         return found[0], found[1]
 
     @cached_property
@@ -170,29 +168,16 @@ class Case:
     def quantities(self) -> Quantities:
         return self.phase.quantities
 
-    @cached_property
-    def equations(self) -> EquationsOfMotion | None:
-        """The equations of motion; None where the model has none."""
-        try:
-            return self.phase.equations if self.system.symbols.u else None
-        except (DerivationError, ModelError):
-            return None
-
     def dimension(self, name: str) -> str:
         """Dimension of a declared name, as far as it follows from the model; "" else."""
         return str(self.edits.dimensions.get(name, ""))
 
     @property
-    def _equilibria(self) -> tuple[Equilibrium, ...]:
-        try:
-            return self.phase.equilibria.found
-        except (DerivationError, MissingValues):
-            return ()
-
-    @property
     def rests(self) -> bool:
         """True if an equilibrium is found."""
-        return bool(self._equilibria)
+        with suppress(DerivationError, MissingValues):
+            return bool(self.phase.equilibria.found)
+        return False
 
     @property
     def places_of_rest(self) -> tuple[Mapping[Node, Scalar], ...]:
@@ -206,7 +191,7 @@ class Case:
 
     def _at_equilibria(self, symbols: tuple[Node, ...]) -> tuple[Mapping[Node, Scalar], ...]:
         named = {x.name: x for x in symbols}
-        found = [place.exact for place in self._equilibria if place.is_exact]
+        found = [place.exact for place in self.phase.equilibria.found if place.is_exact] if self.rests else []
         return tuple(
             {named[x.name]: self.own(value) for x, value in place.items() if x.name in named} for place in found
         )
@@ -220,7 +205,10 @@ class Case:
 
     @cached_property
     def parts(self) -> Contributions:
-        return Contributions(self.system, self.equations)
+        """Contributions of which the equations of motion are the sum; without these where the model has none."""
+        with suppress(DerivationError, ModelError):
+            return Contributions(self.system, self.phase.equations if self.system.symbols.u else None)
+        return Contributions(self.system)
 
     @property
     def edits(self) -> Edits:
@@ -246,12 +234,12 @@ class Case:
     @property
     def rows(self) -> ScalarRow:
         """E = M a + c - Q - J^T lam, one for each speed."""
-        return () if self.equations is None else self.equations.residual[0]
+        return () if self.parts.equations is None else self.parts.equations.residual[0]
 
     @property
     def closing(self) -> ScalarRow:
         """J a + gamma, one for each constraint row."""
-        return () if self.equations is None else self.equations.residual[1]
+        return () if self.parts.equations is None else self.parts.equations.residual[1]
 
     @cached_property
     def gained(self) -> Scalar | None:
@@ -315,7 +303,7 @@ class Case:
     @cached_property
     def _values(self) -> dict[str, Any]:
         """Exact values of the parameters, by name; those in doubles left out."""
-        return {name: tidy(x) for name, x in self.model.exact_parameters().items() if not isinstance(x, float)}
+        return {name: x for name, x in self.model.exact_parameters().items() if not isinstance(x, float)}
 
     def _values_in(self, scalars: ScalarRow, values: Mapping[str, Any]) -> dict[Node, Scalar]:
         """Values of the parameters that stand in scalars."""
@@ -440,7 +428,7 @@ class Case:
     @property
     def speeds(self) -> tuple[dict[Node, Scalar], Extent] | None:
         """(every speed as a function of the coordinates, where that holds), by the first integrals; None: by none."""
-        if self.equations is None or not self.start:
+        if self.parts.equations is None or not self.start:
             return None
         try:
             return self.phase.rates(at_rest=self.at_rest)
@@ -450,7 +438,7 @@ class Case:
     @property
     def by_momenta(self) -> tuple[dict[Node, Scalar], Extent] | None:
         """(the speeds that the momenta from the start and the constraints give by one of them, where); None: none."""
-        if self.equations is None or not self.start:
+        if self.parts.equations is None or not self.start:
             return None
         with suppress(DerivationError, MissingValues, ModelError):
             return self.phase.rates_by_one(at_rest=self.at_rest)

@@ -37,7 +37,6 @@ from eomgen.symbolic.expression import (
     Scalar,
     ScalarRow,
     depends_on,
-    depends_on_any,
     derivative,
     gradient,
     is_zero,
@@ -251,7 +250,7 @@ class Comparison:
 
     def _mixed(self, samples: Samples) -> np.ndarray | None:
         """f with f M + h J = dD/da and f J^T = -dD/dlam: the combination whose accelerations are the author's."""
-        e, case = self.case.equations, self.case
+        e, case = self.case.parts.equations, self.case
         assert e is not None
         slopes = gradient(self.scalar, case.forced)
         if any(depends_on(x, case.forced) for x in slopes):
@@ -434,7 +433,7 @@ def _places(case: Case, about: Mapping[Node, Scalar] | None) -> Iterator[Mapping
 
 def is_linear(rows: ScalarRow, moving: tuple[Node, ...]) -> bool:
     """True if rows are linear in what moves."""
-    return not depends_on_any([slope for row in rows for slope in gradient(row, moving)], moving)
+    return not any(depends_on(slope, moving) for row in rows for slope in gradient(row, moving))
 
 
 def _bent(rows: ScalarRow, moving: tuple[Node, ...]) -> bool:

@@ -16,10 +16,9 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.errors import DerivationError, ModelError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics import Extent, System, division_of
-from eomgen.mechanics.free_bodies import equations_of_motion
+from eomgen.mechanics.dynamics import Extent, System
+from eomgen.mechanics.free_bodies import where_in_pieces
 from eomgen.symbolic.exact import combined, combines
 from eomgen.symbolic.expression import (
     Fraction,
@@ -27,13 +26,11 @@ from eomgen.symbolic.expression import (
     Scalar,
     ScalarRow,
     gradient,
-    holds_op,
     linear_terms,
     symbols_of,
 )
 from eomgen.symbolic.numeric import (
     FLOAT,
-    PIECEWISE,
     NoValue,
     evaluate,
     fifty_digits,
@@ -100,20 +97,6 @@ def _in_pieces(
 ) -> Extent | None:
     """The pieces in which it is one; None: there are no pieces, or not all are known."""
     flat = [x for each in (row, *rows, *(constrained if on_constraints else ())) for x in each]
-    if not any(holds_op(x, *PIECEWISE) for x in flat):
-        return None
-    try:
-        known, key = (
-            system.scope.graph.found(_in_pieces),
-            (system.symbols.u, system.constraints.J, system.constraints.sigma),
-        )
-        if key not in known:
-            known[key] = equations_of_motion(system)
-        division = division_of(known[key], flat)
-    except (DerivationError, ModelError):
-        return None
-    if division is None or not division.found:
-        return None
     width = len(row)
 
     def holds(there: Sequence[Scalar], inside: Mapping[Node, Any]) -> bool:
@@ -130,7 +113,7 @@ def _in_pieces(
         numbers = [values[k : k + width] for k in range(0, len(values), width)]
         return combines(numbers[0], numbers[1:])
 
-    return division.where_holds(flat, holds)
+    return where_in_pieces(system, flat, holds)
 
 
 def _others(scalars: Sequence[Scalar], state: Mapping[Node, Any]) -> dict[Node, Any]:

@@ -21,8 +21,8 @@ from eomgen.judge.reading import HandEquation
 from eomgen.judge.verdict import EXIT_CODES, RIGHT, UNDECIDED, UNREADABLE, WRONG, Verdict, kind_of_equation
 from eomgen.judge.written_pages import PageEquation, equations_of, matrix_of
 from eomgen.mechanics.dynamics import Contribution, System
-from eomgen.model import Model, Values, with_values
-from eomgen.proof import Certificate, certify, verdicts_again
+from eomgen.model import Model, with_values
+from eomgen.proof import Certificate, certify_judged
 from eomgen.symbolic.expression import Call, Expression, Scalar, ScalarRow, depends_on
 
 GENERAL = re.compile(r"\\sum\b|\bsum\b|_\{?(?:[ijk]|ik|ij)\}?(?![\w])")
@@ -165,9 +165,9 @@ class Believed:
         case = self.judge.case
         wrong = {"T": "kinetic_energy()", "V": POTENTIAL}
         more = {letter: self.formulas[text] for letter, text in wrong.items() if text in self.formulas}
-        if not more or case.equations is None:
+        if not more or case.parts.equations is None:
             return ()
-        true = {"T": case.equations.T, "V": case.equations.V}
+        true = {"T": case.parts.equations.T, "V": case.parts.equations.V}
         apart = {letter: case.value(formula) - true[letter] for letter, formula in more.items()}
         share = Contribution("", T=apart.get("T", 0), V=apart.get("V", 0))
         return tuple(a + b for a, b in zip(case.rows, case.parts.operator.rows(share), strict=True))
@@ -230,7 +230,7 @@ class Judgements:
     @property
     def system(self) -> System | None:
         """The system whose equations others are held against; None of a model that has none."""
-        equations = self.judge.case.equations
+        equations = self.judge.case.parts.equations
         return None if equations is None else equations.system
 
     def certify(self, *, again: bool = True) -> Certificate:
@@ -239,11 +239,11 @@ class Judgements:
         Args:
             again: the verdicts are decided again, which those at an instant are not.
         """
-        equations = self.judge.case.equations
+        equations = self.judge.case.parts.equations
         if equations is None:
             return Certificate(())
         said = [each for verdict in self.found if again for each in self.judge.said(verdict, self.defined)]
-        return certify(equations) + verdicts_again(said)
+        return certify_judged(equations, said)
 
 
 def judged(
@@ -251,7 +251,7 @@ def judged(
     requested: Sequence[Answered],
     *,
     at: Any = None,
-    from_rest: Values | None = None,
+    from_rest: Mapping[str, Any] | None = None,
     kind: str | None = None,
     hint: int | None = None,
     to_first_order: bool = False,

@@ -287,11 +287,11 @@ class Authored:
         by_integrals = (case.speeds or case.by_momenta) if self.kind == "law" else None
         speeds = {} if by_integrals is None else by_integrals[0]
         found = found.with_values(dict(zip(speeds, found.flat(tuple(speeds.values())), strict=True)))
-        return found if case.equations is None else self._moving(found)
+        return found if case.parts.equations is None else self._moving(found)
 
     def _moving(self, found: Samples) -> Samples:
         """States with accelerations and multipliers of the motion: [[M, -J^T], [J, 0]] [a; lam] = [forcing; -gamma]."""
-        e = self.case.equations
+        e = self.case.parts.equations
         assert e is not None
         n, k = len(e.M), len(e.J)
         rows = [(*row, *(-J[i] for J in e.J), e.forcing[i]) for i, row in enumerate(e.M)]

@@ -15,7 +15,7 @@ from eomgen.errors import ExpressionError
 from eomgen.frozen import dataclass
 from eomgen.judge.alphabet import Vocabulary, plain_forms, spelled_command
 from eomgen.model import Unit
-from eomgen.symbolic.expression import NAMES, RATES, SLOPE, called_rate, meant_name, spelled
+from eomgen.symbolic.expression import NAMES, SLOPE, called_rate, meant_name, spelled
 
 RATE = "rate_of"  # d/dt of what stands in parentheses
 DEEPEST = 64  # groups inside one another, as of the grammar
@@ -594,7 +594,7 @@ class _Reader:
                 self.at = start + len(word) - 1
             if self.at > start:
                 return
-        if word in RATES and (called := called_rate(self.text[start:])):
+        if called := called_rate(self.text[start:]):
             self.at = start + called[2]
             self.put(f"{self.known.known(called[0]) or called[0]}{chr(39) * called[1]}", "name", start)
             return

@@ -371,7 +371,7 @@ class Judge:
         if verdict.verdict == UNDECIDED or empty or "self-stress" in verdict.up_to:
             return None
         begun = self.case.as_begun if any(x in verdict.up_to for x in BEGUN) else None
-        equations = (begun or self.case).equations
+        equations = (begun or self.case).parts.equations
         if equations is None:
             return None
         try:

@@ -20,7 +20,7 @@ from eomgen.frozen import dataclass
 from eomgen.judge.diagnosis import EXCHANGED, PLACED, PLAINEST, SHARED, SHORTER, Explanation, Mistake, Share
 from eomgen.judge.terms import FEW, Edits, term_text, wrong_parameters
 from eomgen.mechanics.dynamics import Contributions
-from eomgen.model import Body, Coordinate, Leaf, MassProperties, Model, Table, whereabouts
+from eomgen.model import Body, Leaf, Model, Table
 from eomgen.symbolic.expression import (
     Expression,
     Fraction,
@@ -155,7 +155,7 @@ class _Editor:
         """A formula of the file with one mistake in it."""
         with suppress(EomgenError):
             x = self.parts.system.scope.value(leaf.value)
-            where = f"{whereabouts(leaf.path)}, {term_text(x)},"
+            where = f"{leaf.whereabouts}, {term_text(x)},"
             seen: list[Scalar] = [x]
             for kind, other, text, rank in self._others(x, leaf.path[-1] == "angle"):
                 if other not in seen:
@@ -202,7 +202,7 @@ class _Editor:
             return
         for other in points:
             if other != given and other.partition(".")[0] == body and "." in other:
-                text = f"{whereabouts(leaf.path)} is {other}, and not {given}: the lever arm is wrong"
+                text = f"{leaf.whereabouts} is {other}, and not {given}: the lever arm is wrong"
                 yield from self._at(leaf, other, "wrong_point", text, PLACED)
 
     def _of_body(self, name: str) -> Iterator[ModelEdit]:
@@ -228,11 +228,11 @@ class _Editor:
                 text = f"the moment of inertia of {name} about its {point} stands where that about its mass centre is"
                 about = (own[0] + mass.m * (d @ d),)
                 yield self._massive("wrong_point", f"{text} needed (Steiner)", name, mass.com, about)
-        yield from self._other_shapes(name, mass) if plane else ()
+        yield from self._other_shapes(name) if plane else ()
 
-    def _other_shapes(self, name: str, mass: MassProperties) -> Iterator[ModelEdit]:
+    def _other_shapes(self, name: str) -> Iterator[ModelEdit]:
         """The body with the moment of inertia c m r^2 of another shape, in the plane."""
-        shape = self.model.bodies[name].shape
+        shape, mass = self.model.bodies[name].shape, self.parts.system.scope.mass_properties(name)
         sizes = [x for x in vars(shape).values() if isinstance(x, Expression)] if shape is not None else []
         for c, what in SHAPES:
             for r in (x for x in map(self.parts.system.scope.value, sizes) if x is not mass.m):
@@ -264,7 +264,7 @@ class _Editor:
         if len(free) > MOST_HELD or self.model.speeds:
             return
         for names in ([free] if free else []) + ([[name] for name in free] if len(free) > 1 else []):
-            held = {n: _standing(q) if n in names else q for n, q in self.model.coordinates.items()}
+            held = {n: q.held if n in names else q for n, q in self.model.coordinates.items()}
             moved = self._moved_by(names[0]) if len(names) == 1 else []
             what = "everything that moves" if names == free else names[0]
             what = f"{what} ({', '.join(moved)})" if 0 < len(moved) <= FEW else what
@@ -278,11 +278,6 @@ class _Editor:
         joints = {name: body.joint for name, body in self.model.bodies.items() if body.joint is not None}
         space = self.model.space
         return [name for name, x in joints.items() if any(coordinate in s.names for s in x.variables(space))]
-
-
-def _standing(q: Coordinate) -> Coordinate:
-    place = next((x for x in (q.start, q.near) if x is not None), Expression.number(0))
-    return replace(q, start=None, speed=None, near=None, motion=place)
 
 
 def _formula(x: Scalar) -> Expression:

@@ -23,7 +23,7 @@ from eomgen.judge.comparison import excess
 from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.reading import DERIVED, HandEquation
 from eomgen.judge.verdict import RIGHT, UNDECIDED, WRONG, Cause, Verdict
-from eomgen.mechanics.linearization import LinearEquations, Modes, StateMatrices
+from eomgen.mechanics.linearization import Modes
 from eomgen.mechanics.statics import SectionForces
 from eomgen.results import linearize
 from eomgen.symbolic.exact import Polynomial
@@ -70,10 +70,6 @@ class SmallMatrices:
             return SmallMatrices(case, linearize(case.model).modes)
         return None
 
-    @property
-    def equations(self) -> LinearEquations:
-        return self.modes.small.exact or self.modes.small.numbers
-
     @cached_property
     def s(self) -> Node:
         """s of exp(s t), over the symbols of the case."""
@@ -81,11 +77,12 @@ class SmallMatrices:
 
     @property
     def _variable(self) -> Node:
-        return self.equations.laplace_variable
+        return self.modes.small.equations.laplace_variable
 
     def named(self, letter: str) -> list[Named]:
         """(names of the rows, of the columns, entries) of every matrix of that letter: B is one of two."""
-        e, small = self.equations, self.modes.small
+        small = self.modes.small
+        e = small.equations
         q, u, w = ([x.name for x in some] for some in (e.coordinates, e.speeds, e.inputs))
         rows = q if small.is_second_order else u
         plain: dict[str, Named] = {"B": (rows, w, e.B), "E": (q, u, e.E), "F": (q, q, e.F)}
@@ -93,19 +90,12 @@ class SmallMatrices:
         if letter in ("D", "G", "H"):
             found.append((rows, q if letter == "H" else rows, self.modes.symmetric_parts[letter]))
         if letter in ("A", "B", "C_y", "D_y"):
-            for space in self._spaces:
+            exact, numbers = self.modes.state_spaces([x.name for x in e.coordinates])
+            if (space := exact or numbers) is not None:
                 along = {"A": space.states, "B": space.inputs, "C_y": space.states, "D_y": space.inputs}[letter]
                 down = space.outputs if letter in ("C_y", "D_y") else space.states
                 found.append((down, along, getattr(space, letter)))
         return found
-
-    @cached_property
-    def _spaces(self) -> tuple[StateMatrices, ...]:
-        small, outputs = self.modes.small, tuple(q.name for q in self.equations.coordinates)
-        exact = StateMatrices.exact(small, outputs)
-        if exact is not None or not small.reference.valued:
-            return () if exact is None else (exact,)
-        return (StateMatrices.of(small.numbers, small.state_matrix.tolist(), small.input_matrix.tolist(), outputs),)
 
     def own(self, x: Any) -> Scalar:
         """A scalar of the linearized system over the symbols of the case."""

@@ -25,7 +25,6 @@ from eomgen.symbolic.expression import (
     SLOPE,
     Call,
     Expression,
-    Instruction,
     Reference,
     Scalar,
     is_zero,
@@ -81,37 +80,39 @@ class HandEquation:
     def with_names(self, meanings: Mapping[str, Expression]) -> HandEquation:
         """The same, formulas in the place of names."""
 
-        def meant(side: Expression) -> Expression:
-            code = [
-                x
-                for kind, what in side.code
-                for x in (meanings[what].code if kind == "name" and what in meanings else ((kind, what),))
-            ]
-            return Expression(side.text, tuple(code), (-1,) * len(code))
+        def meant(kind: str, what: Any) -> Expression | None:
+            return meanings.get(what) if kind == "name" else None
 
-        return replace(self, left=meant(self.left), right=meant(self.right))
+        return replace(self, left=_replaced(self.left, meant), right=_replaced(self.right, meant))
 
     def with_calls(self, meanings: Mapping[str, Expression]) -> HandEquation:
         """The same, formulas in the place of functions by their texts, also where one is differentiated."""
 
-        def meant(side: Expression) -> Expression:
-            code: list[Instruction] = []
-            for kind, what in side.code:
-                if kind == "call" and str(what) in meanings:
-                    code += meanings[str(what)].code
-                elif kind == "call" and what.name in (SLOPE, RATE):
-                    args = tuple(meant(x) if isinstance(x, Expression) else x for x in what.args)
-                    code.append((kind, replace(what, args=args)))
-                else:
-                    code.append((kind, what))
-            return Expression(side.text, tuple(code), (-1,) * len(code))
+        def meant(kind: str, what: Any) -> Expression | None:
+            if kind != "call":
+                return None
+            if str(what) not in meanings and what.name in (SLOPE, RATE):
+                args = tuple(_replaced(x, meant) if isinstance(x, Expression) else x for x in what.args)
+                return _of_call(replace(what, args=args))
+            return meanings.get(str(what))
 
-        return replace(self, left=meant(self.left), right=meant(self.right))
+        return replace(self, left=_replaced(self.left, meant), right=_replaced(self.right, meant))
 
     @property
     def takes_rates(self) -> bool:
         """True if the rate of something else than a coordinate stands in it."""
         return any(call.name == RATE for call in (*self.left.calls, *self.right.calls))
+
+
+def _replaced(side: Expression, meant: Callable[[str, Any], Expression | None]) -> Expression:
+    """A side with formulas in the place of some of its pieces.
+
+    Args:
+        meant: (kind, what) of a piece -> the formula; None: the piece stays.
+    """
+    pieces = (((kind, what), meant(kind, what)) for kind, what in side.code)
+    code = tuple(x for piece, formula in pieces for x in ((piece,) if formula is None else formula.code))
+    return Expression(side.text, code, (-1,) * len(code))
 
 
 def calls_in(side: Expression) -> Iterator[Call]:
@@ -466,12 +467,12 @@ class Reading:
         rest = left.code[1:]
         if letter in names or rest not in ((), (("number", 2), ("^", None))):
             return left
-        if not moving and (code := _of_small_motions(letter, right, letter in self.letters)):
-            return Expression(left.text, (*code, *rest), (-1,) * (len(code) + len(rest)))
-        if letter in self.letters:
+        formula = None if moving else _of_small_motions(letter, right, letter in self.letters)
+        if formula is None and letter in self.letters:
             return left
-        if letter in ALONE and letter not in self.system.scope.model.outputs:
+        if formula is None and letter in ALONE and letter not in self.system.scope.model.outputs:
             formula = _called(ALONE[letter])
+        if formula is not None:
             return Expression(left.text, (*formula.code, *rest), (-1,) * (len(formula.code) + len(rest)))
         free = [q for q, x in self.system.scope.model.coordinates.items() if not x.driven]
         dots = {"v": "'", "a": "''"}.get(letter)
@@ -537,34 +538,36 @@ class Reading:
         """A side with letters replaced by the functions that they stand for."""
         own = self.system.scope.names
         known = {**self.derived.meanings, **self.letters} if known is None else known
-        code: list[Instruction] = []
-        for kind, what in side.code:
+        tables = self.system.scope.model.tables
+
+        def meant(kind: str, what: Any) -> Expression | None:
             if kind == "name" and what not in own and what in known:
-                code += known[what].code
-            elif kind == "name" and what not in own and what.rstrip("'") in known:  # the rate of a letter
+                return known[what]
+            if kind == "name" and what not in own and what.rstrip("'") in known:  # the rate of a letter
                 rate = known[what.rstrip("'")]
                 for _ in range(len(what) - len(what.rstrip("'"))):
                     rate = _called(RATE, rate)
-                code += rate.code
-            elif kind == "call" and what.name == RATE:
-                args = tuple(self._meant(x if isinstance(x, Expression) else parse(x.name), known) for x in what.args)
-                code.append(("call", replace(what, args=args)))
-            elif kind == "call" and what.name == SLOPE:
-                code.append(("call", replace(what, args=(self._energy(what.args[0]), _formula(what.args[1])))))
-            elif kind == "call" and what.name in LETTERS and what.name not in self.system.scope.model.tables:
-                code.append(("call", replace(what, name=LETTERS[what.name])))
-            else:
-                code.append((kind, what))
-        columns = side.columns if len(code) == len(side.code) else (-1,) * len(code)
-        return Expression(side.text, tuple(code), columns)
+                return rate
+            if kind != "call":
+                return None
+            if what.name == RATE:
+                args = (self._meant(_formula(x), known) for x in what.args)
+                return _of_call(replace(what, args=tuple(args)))
+            if what.name == SLOPE:
+                return _of_call(replace(what, args=(self._energy(what.args[0]), _formula(what.args[1]))))
+            is_letter = what.name in LETTERS and what.name not in tables
+            return _of_call(replace(what, name=LETTERS[what.name])) if is_letter else None
+
+        found = _replaced(side, meant)
+        return replace(found, columns=side.columns) if len(found.code) == len(side.code) else found
 
 
 def _flat(text: str) -> str:
     return "".join(text.split())
 
 
-def _of_small_motions(letter: str, right: Expression, taken: bool) -> tuple[Instruction, ...]:
-    """Code of the frequency, or the period, that a letter stands for beside such a right side; () where it is none.
+def _of_small_motions(letter: str, right: Expression, taken: bool) -> Expression | None:
+    """The frequency, or the period, that a letter stands for beside such a right side; None where it is none.
 
     Args:
         taken: the letter has another meaning: T of an energy is a period where pi and a root stand behind it.
@@ -572,13 +575,12 @@ def _of_small_motions(letter: str, right: Expression, taken: bool) -> tuple[Inst
     found = FREQUENCY.fullmatch(letter)
     rooted = any(kind in ("call", "function") and "sqrt" in str(what) for kind, what in right.code)
     if found is None or (found[1] != "omega" and not ("pi" in right.names and rooted)) or (taken and found[1] != "T"):
-        return ()
+        return None
     number = Expression.number(int(found[2]) if (found[2] or "").isdigit() and found[2] != "0" else 1)
-    frequency: Instruction = ("call", Call("frequency", (number,)))
-    circle: tuple[Instruction, ...] = (("number", 2), ("name", "pi"), ("*", None))
+    frequency, circle = _called("frequency", number), parse("2*pi")
     if found[1] == "omega":
-        return (frequency,)
-    return (frequency, *circle, ("/", None)) if found[1] == "f" else (*circle, frequency, ("/", None))
+        return frequency
+    return frequency / circle if found[1] == "f" else circle / frequency
 
 
 def _formula(argument: Reference | Expression) -> Expression:
@@ -592,7 +594,10 @@ def plain_name(*parts: str) -> str:
 
 
 def _called(name: str, *args: Any) -> Expression:
-    call = Call(name, tuple(args))
+    return _of_call(Call(name, tuple(args)))
+
+
+def _of_call(call: Call) -> Expression:
     return Expression(str(call), (("call", call),), (0,))
 
 

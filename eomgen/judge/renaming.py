@@ -51,7 +51,7 @@ class Renaming:
 
 def renamings(case: Case, written: HandEquation, unknown: Sequence[str]) -> Iterator[Renaming]:
     """Ways to read the unknown names, the nearest first, at most MOST; fewer where the equations are long."""
-    equations = case.equations
+    equations = case.parts.equations
     entries = () if equations is None else (*equations.forcing, *(x for row in equations.M for x in row))
     most = max(FEW, min(MOST, NODES // max(1, len(order(entries)))))
     return islice(_renamings(case, written, unknown), most)

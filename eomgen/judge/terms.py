@@ -29,7 +29,7 @@ from eomgen.judge.diagnosis import (
 )
 from eomgen.mechanics.dynamics import System
 from eomgen.model import Dimension
-from eomgen.symbolic.exact import TooLarge, legible, readable, written_terms
+from eomgen.symbolic.exact import legible, readable, written_terms
 from eomgen.symbolic.expression import (
     Fraction,
     Node,
@@ -53,10 +53,7 @@ MOST_TERMS = 60  # of an equation that is looked at term by term
 
 def terms_of(x: Scalar, positive: frozenset[Node]) -> tuple[Scalar, ...]:
     """The terms of a sum multiplied out, as they are written; () where they are too many."""
-    try:
-        written = written_terms(x, Work.FORMULA, positive)
-    except TooLarge:
-        return ()
+    written = written_terms(x, Work.FORMULA, positive) or ()
     return written if len(written) <= MOST_TERMS else ()
 
 

@@ -18,10 +18,8 @@ from eomgen.judge.decision import combination, is_zero_everywhere, linear_row, s
 from eomgen.judge.diagnosis import PLAINEST, SHORTER, TERMS, Explanation, Mistake, Share
 from eomgen.judge.model_edits import ModelEdits
 from eomgen.judge.reading import HandEquation
-from eomgen.judge.terms import LONG
 from eomgen.mechanics.dynamics import Extent
 from eomgen.model import AtRest, WrittenEquation
-from eomgen.symbolic.exact import legible
 from eomgen.symbolic.expression import (
     Call,
     Fraction,
@@ -37,7 +35,7 @@ from eomgen.symbolic.expression import (
     substituted,
     symbols_of,
 )
-from eomgen.symbolic.numeric import ARRAYS, FLOAT, NoValue, Work, evaluate, tolerances
+from eomgen.symbolic.numeric import ARRAYS, FLOAT, NoValue, evaluate, tolerances
 from eomgen.symbolic.print import readable_text
 
 # -------- right -----------------------------------------------------------------------------------------------
@@ -83,7 +81,7 @@ def truth_of(case: Case, scalar: Scalar, kind: str, *, to_a_constant: bool = Tru
         return Decided(True, OF_ENERGIES[-1])
     if (of_positions := _integral_of_positions(case, scalar)) is not None:
         return of_positions
-    if case.equations is None:
+    if case.parts.equations is None:
         return Decided(None if undecided else False)
     if depends_on(scalar, case.forced):
         follows = case.follows(scalar)
@@ -149,7 +147,7 @@ def _by_integrals(case: Case, scalar: Scalar, known: Mapping[Node, Scalar]) -> t
             continue
         speeds, held = by_integrals
         started = substituted((case.phase.eliminated(scalar),), {**speeds, **known})
-        if not case.starting.is_exact:
+        if not case.starts_exactly:
             if held.everywhere and vanish_nearly(case.system, started):
                 return reported, Extent(True)
             continue
@@ -244,7 +242,7 @@ def _factor(case: Case, scalar: Scalar, row: int, closing: ScalarRow) -> str:
     if x is None:
         return ""
     quotient = over(derivative(scalar, x), derivative(case.rows[row], x))
-    factor = legible(quotient, Work.FORMULA, case.system.scope.positive, LONG)
+    (factor,) = case.edits.written((quotient,))
     return "" if type(factor) is not Node and factor == 1 else readable_text(factor) or "of the state"
 
 
@@ -417,9 +415,7 @@ def sizes_in(case: Case, written: HandEquation, scalar: Scalar) -> dict[Node, Sc
         return {}
     found: dict[Node, Scalar] = {}
     for x in order((scalar, *case.rows)):
-        form = (
-            x if x.op == "abs" else legible(x, Work.FORMULA, case.system.scope.positive, LONG) if x.op == "sqrt" else 0
-        )
+        form = x if x.op == "abs" else case.edits.written((x,))[0] if x.op == "sqrt" else 0
         sizes = [y for y in order((form,)) if y.op in ("abs", "sqrt")]
         if sizes and all(y.op == "abs" for y in sizes):
             found[x] = substituted((form,), {y: y.args[0] for y in sizes})[0]

@@ -10,14 +10,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import field, replace
 from typing import TYPE_CHECKING, Any
 
-from eomgen.documents import Document, Lines, Step
 from eomgen.frozen import dataclass
 from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.diagnosis import Explanation, Share
 from eomgen.judge.reading import MULTIPLIER, HandEquation
-from eomgen.judge.terms import FEW, LONG, short_text
+from eomgen.judge.terms import FEW, short_text
 from eomgen.model import FUNCTIONS, Model, OutputSource
-from eomgen.symbolic.exact import legible
 from eomgen.symbolic.expression import (
     Call,
     Expression,
@@ -25,12 +23,10 @@ from eomgen.symbolic.expression import (
     Reference,
     Scalar,
     depends_on,
-    depends_on_any,
     is_zero,
     over,
     substituted,
 )
-from eomgen.symbolic.numeric import Work
 
 if TYPE_CHECKING:
     from eomgen.judge.case import Case
@@ -215,9 +211,6 @@ class Verdict:
     def __str__(self) -> str:
         return "\n".join(self.lines())
 
-    def document(self, title: str) -> Document:
-        return Document(title, steps=(Step("", "", (Lines(self.lines()),)),), entries=self.as_dict)
-
 
 # -------- kinds -----------------------------------------------------------------------------------------------
 # An equation -> what it is about: an equation of motion, an energy, a reaction, ... by what stands in it.
@@ -323,7 +316,7 @@ def _joined(case: Case, found: Explanation, causes: list[Cause]) -> list[Cause]:
     )
     symbols = case.system.symbols
     constant = not depends_on(
-        legible(ratio, Work.FORMULA, case.system.scope.positive, LONG),
+        case.edits.written((ratio,))[0],
         (symbols.t, *symbols.x, *case.forced),
     )
     name, term = causes[k].quantity, causes[k].term
@@ -381,7 +374,7 @@ def _is_coriolis(case: Case, rows: Sequence[Scalar]) -> bool:
     """True if the rows are products of different speeds alone: nothing is left of them where only one moves."""
     symbols = case.system.symbols
     rows = case.edits.written(tuple(rows))
-    if depends_on_any(rows, case.forced) or not depends_on_any(rows, symbols.u):
+    if any(depends_on(x, case.forced) for x in rows) or not any(depends_on(x, symbols.u) for x in rows):
         return False
     alone = [x for u in symbols.u for x in substituted(tuple(rows), {w: 0 for w in symbols.u if w is not u})]
     return all(map(is_zero, alone)) or bool(is_zero_everywhere(case.system, *alone).holds)

@@ -66,9 +66,6 @@ from eomgen.model.contacts import Contact as Contact
 # "did you mean 'forearm'?", or "" where nothing is near
 from eomgen.model.diagnostics import nearest as nearest
 
-# A part in words: "the joint of body 'hand'", "parameter 'm'"
-from eomgen.model.diagnostics import whereabouts as whereabouts
-
 # A law of the state: an expression with coordinates, rates or speeds in it; None for everything else
 from eomgen.model.driven import law_of as law_of
 from eomgen.model.expansion import tables_read as tables_read
@@ -295,6 +292,9 @@ from eomgen.model.replaced import equation_in as equation_in
 
 # An equation that a person typed, in SI, and what was taken of it
 from eomgen.model.replaced import equation_typed as equation_typed
+
+# The model with coordinates and inputs that follow files: a coordinate in the way it was driven, else by `motion`
+from eomgen.model.replaced import following as following
 
 # Refuses a name of what takes no values
 from eomgen.model.replaced import refuse_what_is_not_set as refuse_what_is_not_set

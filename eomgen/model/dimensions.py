@@ -8,7 +8,7 @@ from typing import Any
 
 from eomgen.frozen import dataclass
 from eomgen.model.catalog import Catalog
-from eomgen.model.diagnostics import Diagnostic, whereabouts
+from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.fields import Leaf, WrittenEquation, named
 from eomgen.model.inference import NUMBER, SECOND, TIME, Clash, Dimension, Inference, Walk, dimension_of_unit
 from eomgen.model.outputs import FUNCTIONS
@@ -203,7 +203,7 @@ def _diagnostic(catalog: Catalog, leaf: Leaf, clash: Clash, names: Names) -> Dia
         whole = f"{kind} '{name}'" if kind is not None else f"'{name}'"
         equation = isinstance(leaf.value, WrittenEquation)
         needed = str(clash.needed) if equation else _own_text(leaf) or str(clash.needed)
-        place = "the left side" if equation else whereabouts(leaf.path)
+        place = "the left side" if equation else leaf.whereabouts
         what = f"{whole} is in {unit}, but {place} is in {named(needed)}"
         fix = fix or ("" if kind is None else f"give another {kind}, or fix its unit")
     other = None if clash.other is None else (clash.other.column, len(clash.other.text))

@@ -14,7 +14,7 @@ from typing import Any, Generic, TypeVar
 
 from eomgen.errors import ExpressionError
 from eomgen.frozen import dataclass
-from eomgen.model.diagnostics import Decimal, Diagnostic, article, nearest, shown, unknown_keys
+from eomgen.model.diagnostics import Decimal, Diagnostic, article, nearest, shown, unknown_keys, whereabouts
 from eomgen.model.positions import DocumentPath
 from eomgen.model.quantities import Unit, parse_typed_equation
 from eomgen.symbolic.expression import Expression, as_expression, is_exact
@@ -41,6 +41,11 @@ class Leaf:
     rule: Any
     value: Any
     part: Any = None
+
+    @property
+    def whereabouts(self) -> str:
+        """Its place in words: "'mass' of body 'rod'"."""
+        return whereabouts(self.path)
 
 
 class Alternatives(list[Any]):

@@ -87,7 +87,7 @@ def _angles(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Diagn
         for number, column in _terms(expression):
             size = abs(number)
             if size > TURN:
-                what = f"{size:g} in {whereabouts(leaf.path)} is {size:g} rad: {size / TURN:.1f} turns"
+                what = f"{size:g} in {leaf.whereabouts} is {size:g} rad: {size / TURN:.1f} turns"
                 yield Diagnostic(leaf.path, what, f"for degrees write {_of_pi(size)}", column, len(f"{size:g}"))
 
 
@@ -271,9 +271,7 @@ def _masses(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Diagn
         return
     (least, _), (most, leaf) = min(found, key=lambda pair: pair[0]), max(found, key=lambda pair: pair[0])
     if most > tolerances.MASSES_APART * least:
-        what = (
-            f"{whereabouts(leaf.path)} is {most:g} kg, and the least mass {least:g} kg: {most / least:.0e} times less"
-        )
+        what = f"{leaf.whereabouts} is {most:g} kg, and the least mass {least:g} kg: {most / least:.0e} times less"
         yield Diagnostic(leaf.path, what, "look at the units; what does not move needs no body")
 
 

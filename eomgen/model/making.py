@@ -11,7 +11,7 @@ from eomgen.model.catalog import Catalog, diagnostics_of_one, owner_of
 from eomgen.model.checks.bodies import bodies, numbers
 from eomgen.model.checks.names import equations, formulas, missing_point, names, references, speeds
 from eomgen.model.constraints import Limit
-from eomgen.model.diagnostics import Diagnostic, nearest, whereabouts
+from eomgen.model.diagnostics import Diagnostic, nearest
 from eomgen.model.dimensions import dimensions
 from eomgen.model.fields import Leaf, NameRule, Table, WrittenEquation, in_si
 from eomgen.model.outputs import FUNCTIONS
@@ -57,7 +57,7 @@ def _call(catalog: Catalog, leaf: Leaf, call: Call) -> Iterator[Diagnostic]:
         return
     functions = getattr(leaf.rule, "functions", None)
     if functions is not None and (call.name not in functions or len(call.args) > 2):
-        what, fix = f"'{call}' cannot stand in {whereabouts(leaf.path)}", f"only {', '.join(functions)} can stand here"
+        what, fix = f"'{call}' cannot stand in {leaf.whereabouts}", f"only {', '.join(functions)} can stand here"
         few = "name one body, whose axes are meant too"
         yield Diagnostic(leaf.path, what, few if call.name in functions else fix, call.column, len(call.name))
         return

@@ -1,7 +1,7 @@
 """Text or Python -> Model: what a user declares. Frozen values that compute nothing."""
 
 from dataclasses import field
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, Self
 
 from eomgen.frozen import dataclass
 from eomgen.model import joints, shapes
@@ -117,6 +117,12 @@ class Coordinate(Part):
     def driven(self) -> bool:
         """True if the model prescribes its motion."""
         return any(law is not None for law in (self.motion, self.rate, self.acceleration))
+
+    @property
+    def held(self) -> Self:
+        """The same coordinate, which stays where it starts."""
+        place = next((x for x in (self.start, self.near) if x is not None), Expression.number(0))
+        return self.altered(start=None, speed=None, near=None, motion=place)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,6 +5,9 @@ Requests are typed too: a range, an equation, an output of a text, "max(reaction
 
 from __future__ import annotations
 
+import csv
+import errno
+import io
 import math
 import re
 import warnings
@@ -17,15 +20,16 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import ExpressionError, ModelError, UsageError
+from eomgen.files import read
 from eomgen.frozen import dataclass
 from eomgen.model.diagnostics import Diagnostic, nearest
 from eomgen.model.driven import law_of, with_feedback
 from eomgen.model.expansion import counted_anew
 from eomgen.model.fields import EVERY, AtRest, Table, WrittenEquation, is_mixed
 from eomgen.model.model import Model
-from eomgen.model.parts import Output
+from eomgen.model.parts import Coordinate, Output
 from eomgen.model.quantities import Typed, Unit, parse_typed_equation
-from eomgen.model.sampled_laws import TimeLawRule
+from eomgen.model.sampled_laws import TimeLawRule, samples
 from eomgen.model.typed import Settled, Typing, shown
 from eomgen.symbolic.expression import Expression, parse
 
@@ -546,3 +550,97 @@ def _in_full(model: Model, formula: str) -> str:
     plain = {name: f"({output.value})" for name, output in model.outputs.items() if output.at is None}
     names = "|".join(map(re.escape, plain.keys() - others))
     return re.sub(rf"(?<![\w.])({names})(?![\w.'(])", lambda found: plain[found[0]], formula) if names else formula
+
+
+# -------- samples of a file -----------------------------------------------------------------------------------
+# `--follow theta=run.csv`: a motion or an input through the samples of a file, in place of the model's own.
+
+
+FOLLOW = "--follow theta=run.csv"
+LARGEST = 100_000_000  # bytes of a file
+LAWS = ("motion", "rate", "acceleration")
+
+
+def following(model: Model, given: Sequence[str]) -> Model:
+    """The model with coordinates and inputs that follow files: a coordinate in the way it was driven, else by `motion`.
+
+    Args:
+        given: NAME=FILE each; a CSV with the times in its first column and the values, in SI, in the column NAME, or
+            in its second.
+    Raises:
+        UsageError: no coordinate or input of that name, one that cannot be driven, or a file without samples.
+    """
+    coordinates, inputs = dict(model.coordinates), dict(model.inputs)
+    for name, path in assignments(given, FOLLOW):
+        if name in inputs:
+            inputs[name] = inputs[name].altered(value=_samples_of(path, name))
+        elif name in coordinates:
+            coordinates[name] = _driven(coordinates[name], name, _samples_of(path, name))
+        else:
+            fix = _named(name, [*coordinates, *inputs])
+            raise UsageError(f"--follow: there is no coordinate or input '{name}'", fix=fix)
+    changes: dict[str, Any] = {"coordinates": Table(coordinates), "inputs": Table(inputs)}
+    try:
+        replace(model, **changes)  # what is wrong with a model is wrong with this one
+    except ModelError as error:
+        raise UsageError(f"--follow: {error.problems[0].what}", fix=error.problems[0].fix) from error
+    followed: Model = model.altered(**changes)
+    return followed
+
+
+def _driven(part: Coordinate, name: str, law: Expression) -> Coordinate:
+    if part.dependent:
+        raise UsageError(
+            f"--follow: coordinate '{name}' is dependent, the constraints move it", fix="drive another one"
+        )
+    (way,) = [way for way in LAWS if getattr(part, way) is not None] or ["motion"]
+    own = {} if way != "motion" else {"start": None, "speed": None}
+    driven: Coordinate = part.altered(**{way: law}, **own)
+    return driven
+
+
+def _samples_of(path: str, name: str) -> Expression:
+    """The samples of a file.
+
+    Raises:
+        UsageError: it cannot be read, or holds no samples.
+    """
+    try:
+        data = read(path, LARGEST)
+        if len(data) > LARGEST:
+            raise OSError(errno.EFBIG, f"it is longer than {LARGEST // 10**6} MB")
+        lines = io.StringIO(data.decode("utf-8-sig"), newline="")
+        rows = [row for row in csv.reader(lines) if row and not row[0].lstrip().startswith("#")]
+    except UnicodeDecodeError as error:
+        what = f"--follow: not UTF-8: byte 0x{error.object[error.start]:02x}"
+        raise UsageError(what, path, "write plain text: a time and a value a row") from error
+    except (OSError, csv.Error) as error:
+        raise UsageError(
+            f"--follow: cannot be read: {getattr(error, 'strerror', None) or error}",
+            path,
+            "name a file that can be read",
+        ) from error
+    if any(mark in row[0] for row in rows for mark in ";\t"):
+        raise UsageError("--follow: columns stand between commas", path, "write 0.5,1.25: decimals have points")
+    heads = [word.strip() for word in rows.pop(0)] if rows and not _is_a_number(rows[0][0]) else []
+    if name not in heads and len(heads) > 2:
+        raise UsageError(f"--follow: there is no column '{name}'", path, _named(name, heads[1:]))
+    column = heads.index(name) if name in heads else 1
+    if any(len(row) <= column for row in rows):
+        raise UsageError(f"--follow: a row has no column {column + 1}", path, fix="write a time and a value a row")
+    try:
+        return samples([row[0].strip() for row in rows], [row[column].strip() for row in rows])
+    except ModelError as error:
+        raise UsageError(f"--follow: {error.problems[0].what}", path, fix=error.problems[0].fix) from error
+
+
+def _is_a_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+def _named(name: str, names: Sequence[str]) -> str:
+    return nearest(name, names) or f"there are {', '.join(names) or 'none'}"

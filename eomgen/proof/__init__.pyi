@@ -185,5 +185,5 @@ from eomgen.proof.structure import structure_pictured as structure_pictured
 # An equation with its verdict
 from eomgen.proof.verdicts import JudgedEquation as JudgedEquation
 
-# Checks of all verdicts; those that numbers cannot decide are unchecked
-from eomgen.proof.verdicts import verdicts_again as verdicts_again
+# The proof of the equations against which others are judged, and of these verdicts by another decision
+from eomgen.proof.verdicts import certify_judged as certify_judged

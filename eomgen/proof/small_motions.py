@@ -145,7 +145,7 @@ def _of_part(differences: Differences) -> Check:
 def _entries(modes: Modes) -> dict[str, list[list[Any]]]:
     """The printed matrices in numbers: exact ones with 50 digits; C of second order is printed in its parts."""
     small = modes.small
-    e: LinearEquations = small.exact or small.numbers
+    e: LinearEquations = small.equations
     whole = {"C": _numbers(small, e.C)} if small.is_second_order else {}
     return {letter: _numbers(small, getattr(e, letter), modes) for letter in "MCKBFED" if letter not in whole} | whole
 
@@ -169,7 +169,7 @@ def _in_rows(flat: Sequence[Any], rows: Sequence[Sequence[Any]]) -> list[list[An
 def _wrong_parts(modes: Modes) -> str:
     """Message if a printed part of C or K is not symmetric or skew as its letter says, or not part of the sum; ""."""
     small = modes.small
-    whole = {letter: _numbers(small, getattr(small.exact or small.numbers, letter)) for letter in "CK"}
+    whole = {letter: _numbers(small, getattr(small.equations, letter)) for letter in "CK"}
     parts = {
         name: _numbers(small, A if name == "S" else _printed_half(modes, A))
         for name, A in modes.symmetric_parts.items()

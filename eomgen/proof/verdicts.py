@@ -28,7 +28,8 @@ from eomgen.mechanics.instant import Quantities
 from eomgen.mechanics.start import Start
 from eomgen.model import FUNCTIONS, OutputSource
 from eomgen.proof.at_a_state import NumericState, state_in_numbers
-from eomgen.proof.check import Check, Tally
+from eomgen.proof.certificate import certify
+from eomgen.proof.check import Certificate, Check, Tally
 from eomgen.proof.in_numbers import STEP
 from eomgen.proof.instant import NearbyStates
 from eomgen.proof.states import closed_near, refuse_open
@@ -98,6 +99,11 @@ class JudgedEquation:
     @property
     def may_differ_by_a_constant(self) -> bool:
         return bool(self.constants) or "a first integral" in self.up_to or "a constant of the potential" in self.up_to
+
+
+def certify_judged(equations: EquationsOfMotion, judged: Iterable[JudgedEquation]) -> Certificate:
+    """The proof of the equations against which others are judged, and of these verdicts by another decision."""
+    return certify(equations) + verdicts_again(judged)
 
 
 def verdicts_again(judged: Iterable[JudgedEquation]) -> tuple[Check, ...]:

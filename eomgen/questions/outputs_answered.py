@@ -24,7 +24,6 @@ from eomgen.errors import (
 )
 from eomgen.frozen import dataclass
 from eomgen.mechanics.instant import InstantKinematics, Quantities
-from eomgen.mechanics.integrals import FirstIntegrals
 from eomgen.model import (
     FUNCTIONS,
     AtRest,
@@ -32,7 +31,6 @@ from eomgen.model import (
     ModelOrPath,
     Output,
     OutputSource,
-    Unit,
     Values,
 )
 from eomgen.proof import AnswerSolver, Certificate, certify_answers
@@ -40,7 +38,7 @@ from eomgen.resources import PatienceEnded, doing, keep_what_there_is
 from eomgen.results import Linearization, linearize, why_not_at_rest
 from eomgen.simulation import WholeRun
 from eomgen.study import MotionFromStart, StateAtInstant, Study, model_to_study, study_at_rest
-from eomgen.symbolic.expression import Call, Expression, Graph, Node, Scalar, depends_on, order, substituted, symbols_of
+from eomgen.symbolic.expression import Call, Expression, Node, Scalar, depends_on, order, substituted, symbols_of
 from eomgen.symbolic.numeric import number_of, transplanted
 from eomgen.symbolic.print import LONGEST_RESULT, text_size
 
@@ -134,7 +132,7 @@ def solve(model: ModelOrPath, *, parameters: Values | None = None, start: Values
 
 def _solver_of(model: Model) -> _Solver:
     motions = {at_rest: MotionFromStart(model, at_rest) for at_rest in (False, True)}
-    return _Solver(model, motions, model.output_units)
+    return _Solver(model, motions, {output: unit.text for output, unit in model.output_units.items()})
 
 
 @dataclass(frozen=True)
@@ -148,7 +146,7 @@ class _Solver:
 
     model: Model
     motions: Mapping[bool, MotionFromStart]
-    units: Mapping[Output, Unit]
+    units: Mapping[Output, str]
 
     @property
     def phase(self) -> Study:
@@ -167,7 +165,7 @@ class _Solver:
         return Answer(unit=self._unit(output), message=f"{error.what}; {error.fix}" if error.fix else error.what)
 
     def _unit(self, output: Output) -> str:
-        return self.units[output].text if output in self.units else ""
+        return self.units.get(output, "")
 
     def _answer(self, output: Output) -> Answer:
         if WholeRun.answers(output):
@@ -329,7 +327,7 @@ class _Solver:
         Raises:
             MissingValues: a parameter that it needs has no value.
         """
-        scalar = _in_unit(quantity, output)
+        scalar = self._in_unit(quantity, output)
         known: dict[str, Scalar | float] = {x.name: v for x, v in self.phase.parameters.items()}
         names = {x.name for x in symbols_of((scalar,))}
         if names <= known.keys():
@@ -349,6 +347,14 @@ class _Solver:
             state = {x: values[x.name] for x in symbols_of((system.inputs[name],))}
             values[name] = number_of(system.inputs[name], state)
         return number_of(scalar, {x: values[x.name] for x in symbols_of((scalar,))})
+
+    def _in_unit(self, quantity: Scalar, output: Output) -> Scalar:
+        """Quantity in the unit of the output, exactly."""
+        if output.unit is None:
+            return quantity
+        graph = quantity.graph if isinstance(quantity, Node) else self.phase.system.scope.graph
+        found: Scalar = output.unit.from_si(quantity, graph.pi)
+        return found
 
     # -- at an instant -------------------------------------------------------------------------
 
@@ -399,7 +405,7 @@ class _Solver:
         if moment.phase is not phase or not motion.start:
             return None
         requested = phase.eliminated(phase.raw(output.value))
-        if not FirstIntegrals(phase.equations).stay_constant((requested,))[0]:
+        if not phase.stays_constant(requested):
             return None
         return substituted((requested,), motion.start)[0]
 
@@ -431,15 +437,6 @@ def _jump(phase: Study, output: Output, numbers: Mapping[Node, float]) -> str:
     except DerivationError as error:
         return f"no number: {error.what}; {error.fix}"
     return ""
-
-
-def _in_unit(quantity: Scalar, output: Output) -> Scalar:
-    """Quantity in the unit of the output, exactly."""
-    if output.unit is None:
-        return quantity
-    graph = quantity.graph if isinstance(quantity, Node) else Graph()
-    found: Scalar = output.unit.from_si(quantity, graph.pi)
-    return found
 
 
 def _valued(answer: Answer, value: float, where: str) -> Answer:

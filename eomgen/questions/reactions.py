@@ -14,7 +14,6 @@ from eomgen.documents import (
     Found,
     Lines,
     Listing,
-    Picture,
     PrintedReactions,
     Quantity,
     Statement,
@@ -25,12 +24,11 @@ from eomgen.documents import (
     plain_document,
     prose,
     proven,
-    run_picture,
     with_start_reported,
 )
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, ModelError, UsageError
-from eomgen.mechanics.free_bodies import Balance, NamedReaction
+from eomgen.mechanics.free_bodies import NamedReaction
 from eomgen.mechanics.statics import ContactsAtStart
 from eomgen.model import (
     FUNCTIONS,
@@ -49,7 +47,7 @@ from eomgen.proof import Certificate, certify_reactions
 from eomgen.questions.outputs_answered import Answers, solve
 from eomgen.resources import doing
 from eomgen.results import why_not_at_rest
-from eomgen.runs import one_turn, run_of_a_page
+from eomgen.runs import reaction_picture
 from eomgen.study import Study, model_to_study, study_of_modes
 from eomgen.symbolic.expression import parse
 
@@ -175,7 +173,7 @@ def reactions_document(
     )
     document = with_start_reported(document, starting)
     if plot is not None:
-        reaction_picture(starting, view, time).save(plot)
+        reaction_picture(pipeline.derive(starting), view, time).save(plot)
     return proven(document, found.certify() if certify and found else None)
 
 
@@ -323,13 +321,12 @@ def _listing(study: Study, requested: Iterable[NamedReaction], found: dict[str, 
     Args:
         below: the self-stresses of indeterminate ones follow below.
     """
-    balance = Balance.of(study.system)
     rows = []
     for named in requested:
         answer = found[named.name]
         if below and OPEN in (answer.message or ""):
             answer = replace(answer, message=f"{OPEN}, see below")
-        rows.append(found_reaction(balance, named, answer))
+        rows.append(found_reaction(study.system, named, answer))
     return Listing(tuple(rows))
 
 
@@ -360,23 +357,3 @@ def _sum_statements(sums: Mapping[str, Quantity]) -> Iterable[Statement]:
 
 def _times(share: str, k: str) -> str:
     return {"1": k, "-1": f"-{k}"}.get(share, f"({share})*{k}" if " " in share else f"{share}*{k}")
-
-
-# -- as a picture ---------------------------------------------------------------------------------
-
-
-SAMPLES = 721  # of a cycle
-
-
-def reaction_picture(model: Model, view: str | None = None, time: float | None = None) -> Picture:
-    """Reactions along the motion from the start.
-
-    Args:
-        view: "polar" or "resultants"; None: of hinges in the plane the first.
-        time: the duration [s]; None: one turn of the driven joint, else as long as a page shows it.
-    Raises:
-        RunFailed: nothing carries such a force; the motion ends at once.
-    """
-    equations = pipeline.derive(model)
-    run, _ = run_of_a_page(equations, time or one_turn(equations.graph.system), SAMPLES)
-    return run_picture(run, view or ("polar" if model.space == "plane" else "resultants"), title=model.name)

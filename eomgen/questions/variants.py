@@ -7,13 +7,14 @@ file leaves the others' values as they are.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 from itertools import count
 from random import Random
+from typing import Any
 
 from eomgen.errors import EomgenError, UsageError
-from eomgen.model import Model, ModelOrPath, Parameter, Valued, model_at, with_values
+from eomgen.model import Model, ModelOrPath, Valued, model_at, with_values
 from eomgen.questions.outputs_answered import solve
 from eomgen.resources import doing
 from eomgen.results import missing_values
@@ -47,7 +48,9 @@ def variant_of(model: Model, number: int) -> Valued:
     with doing("the draw of a variant"):
         due = frozenset(_answered(model))
         for attempt in range(ATTEMPTS):
-            drawn = {name: _drawn(part, Random(f"{number}/{attempt}/{name}")) for name, part in ranged.items()}
+            drawn = {
+                name: _drawn(part.range or (), Random(f"{number}/{attempt}/{name}")) for name, part in ranged.items()
+            }
             try:
                 valued = with_values(model, drawn, declared=True, options=("the variant", "start"))
                 if due <= frozenset(_answered(valued.model)):
@@ -73,9 +76,9 @@ def _answered(model: Model) -> Iterator[str]:
             yield name
 
 
-def _drawn(part: Parameter, random: Random) -> str:
+def _drawn(listed: Iterable[Any], random: Random) -> str:
     """A value in the unit of the parameter: one of its list, or a round number of its range."""
-    values = tuple(Decimal(str(x)) for x in part.range or ())
+    values = tuple(Decimal(str(x)) for x in listed)
     return f"{random.choice(values if len(values) > 2 else round_numbers(*values)):f}"
 
 

@@ -26,14 +26,14 @@ from eomgen.runs.single_run import PAGE_TIME as PAGE_TIME
 # Warnings: samples that a run goes beyond, and limits of coordinates that it passes
 from eomgen.runs.single_run import cautions_of as cautions_of
 
-# Longest time for one turn among the joints that are driven at a constant rate [s]; None if there is none
-from eomgen.runs.single_run import one_turn as one_turn
-
 # Stepping of a motion for which no time was given
 from eomgen.runs.single_run import page_stepping as page_stepping
 
 # Time for which a motion is shown where none is given [s], and why it is shorter than PAGE_TIME
 from eomgen.runs.single_run import page_time as page_time
+
+# Reactions along the motion from the start
+from eomgen.runs.single_run import reaction_picture as reaction_picture
 
 # The motion by equations that are derived already
 from eomgen.runs.single_run import run as run

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.codegen import closing_accelerations, parameter_vector
-from eomgen.documents import Document, Grid, Statement, cell_text, plain_document, prose, proven
+from eomgen.documents import Document, Grid, Picture, Statement, cell_text, plain_document, prose, proven, run_picture
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, ExpressionError, ModelError, Problem, UsageError
 from eomgen.files import is_stream
@@ -367,6 +367,23 @@ def run_document(
     return proven(
         document, run.certify() + run_reported(run, model, _reported(statements, payload, output)) if certify else None
     )
+
+
+TURN_SAMPLES = 721  # of a cycle
+
+
+def reaction_picture(equations: Equations, view: str | None = None, time: float | None = None) -> Picture:
+    """Reactions along the motion from the start.
+
+    Args:
+        view: "polar" or "resultants"; None: of hinges in the plane the first.
+        time: the duration [s]; None: one turn of the driven joint, else as long as a page shows it.
+    Raises:
+        RunFailed: nothing carries such a force; the motion ends at once.
+    """
+    found, _ = run_of_a_page(equations, time or one_turn(equations.graph.system), TURN_SAMPLES)
+    model = equations.model
+    return run_picture(found, view or ("polar" if model.space == "plane" else "resultants"), title=model.name)
 
 
 def cautions_of(model: Model, run: Trajectory) -> tuple[Problem, ...]:

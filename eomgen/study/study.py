@@ -294,6 +294,10 @@ class Study:
         """The same with all speeds 0."""
         return ExactStart(self.system, True)
 
+    def stays_constant(self, x: Scalar) -> bool:
+        """True if a function of the state is proven to keep its value along every motion."""
+        return FirstIntegrals(self.equations).stay_constant((x,))[0]
+
     def start_of(self, *, at_rest: bool) -> ExactStart:
         """The start, or the same with all speeds 0."""
         return self.start_from_rest if at_rest else self.start

@@ -11,7 +11,6 @@ from eomgen.sweeps.documents import replay_document as replay_document
 
 # The results of a sweep, with the proof of one of its runs
 from eomgen.sweeps.documents import sweep_reported as sweep_reported
-from eomgen.sweeps.runs_of_a_plan import TABLE as TABLE
 
 # Results of every run
 from eomgen.sweeps.runs_of_a_plan import Sweep as Sweep

@@ -117,6 +117,11 @@ class Sweep:
         """A header line and a line for each run; SI, or (`units`) in the units of the file, "k [N/m]"."""
         files.write(path, lambda file: _write_csv(file, self, units))
 
+    @property
+    def table_file(self) -> Path | None:
+        """The file of the table; None of a sweep in memory."""
+        return None if self.folder is None else self.folder / TABLE
+
     def in_units(self) -> tuple[dict[str, float], dict[str, str]]:
         """(the size in SI, the head "k [N/m]") of every column that has a unit, as the file declares it."""
         model = self.plan.model

@@ -3,9 +3,6 @@
 # The model with the values that were typed, and their record; the other options, equations in SI
 from eomgen.verbs.assignments import typed as typed
 
-# The model with coordinates and inputs that follow files: a coordinate in the way it was driven, else by `motion`
-from eomgen.verbs.csv_inputs import following as following
-
 # The derivation, and its certificate
 from eomgen.verbs.derive import derive_document as derive_document
 

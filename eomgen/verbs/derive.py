@@ -5,14 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 from eomgen import pipeline
-from eomgen.documents import Document, Grid, Step, fragment_of, language_of, proven, with_constraints_closed
-from eomgen.equations import Equations
+from eomgen.documents import Document, fragment_of, language_of, proven, with_constraints_closed
 from eomgen.model import Model
 from eomgen.proof import Certificate
 from eomgen.results import difference_document
 from eomgen.results import impact as impact_of
-
-HEADS = {"names": "name", "equations": "equation of motion along", "reactions": "reaction", "outputs": "output"}
 
 
 def derive_document(
@@ -51,9 +48,7 @@ def derive_document(
         document = replace(document, entries=found.entries)
         return proven(document, found.certify() if certify else None)
     equations = pipeline.derive(model, method)
-    document = equations.written(full=full)
-    document = _with_units(equations, document) if units else document
-    document = with_constraints_closed(document, equations.system)
+    document = with_constraints_closed(equations.written(full=full, units=units), equations.system)
     document = fragment_of(document, section, fragment, numbered).said_in(language_of(model, language))
     return equations.proven(document, data=data) if certify else proven(document, None)
 
@@ -62,12 +57,3 @@ def _both(first: Certificate, second: Certificate) -> Certificate:
     """Checks of two models, each under the model's own heading."""
     reported = (("this model", first), ("the other", second))
     return Certificate(tuple(replace(c, name=f"{whose}: {c.name}") for whose, each in reported for c in each.checks))
-
-
-def _with_units(equations: Equations, document: Document) -> Document:
-    """Adds a section of units to a document, for people and for machines."""
-    found = equations.study.units
-    grids = tuple(Grid((HEADS[key], "unit"), tuple(found[key].items())) for key in HEADS if found[key])
-    entries = document.entries
-    steps = (*document.steps, Step("units", "Units", grids))
-    return replace(document, steps=steps, entries=lambda: {**entries(), "units": found})

@@ -9,7 +9,7 @@ from eomgen.errors import UsageError
 from eomgen.frozen import dataclass
 from eomgen.model import Model, Range, assignments, requested_typed
 from eomgen.questions import variant_of
-from eomgen.sweeps import TABLE, Stepped, planned, spread_of, sweep_reported, swept
+from eomgen.sweeps import Stepped, planned, spread_of, sweep_reported, swept
 from eomgen.verbs.assignments import typed
 
 
@@ -71,8 +71,8 @@ def sweep_document(
         start=dict(assignments(requested.start, "--start theta=1")),
     )
     found = swept(plan, workers=requested.workers, out=output)
-    if units and found.folder is not None:
-        found.to_csv(found.folder / TABLE, units=True)
+    if units and found.table_file is not None:
+        found.to_csv(found.table_file, units=True)
     if plot:
         found.plot(plot, view)
     document = sweep_reported(valued.model, found, [plot] if plot else [], certify=certify)

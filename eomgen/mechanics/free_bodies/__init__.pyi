@@ -27,6 +27,9 @@ from eomgen.mechanics.free_bodies.friction import SystemFriction as SystemFricti
 # The equations of motion of a system in their shortest form, friction in Q and forcing
 from eomgen.mechanics.free_bodies.friction import equations_of_motion as equations_of_motion
 
+# Extent of a property of scalars, by their form in each piece and a state there; None where no pieces are known
+from eomgen.mechanics.free_bodies.friction import where_in_pieces as where_in_pieces
+
 # The equations of motion, friction in Q and forcing, and the accelerations explicit; the same without friction
 from eomgen.mechanics.free_bodies.friction import with_friction as with_friction
 

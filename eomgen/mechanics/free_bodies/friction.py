@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
-from eomgen.errors import DerivationError
+from eomgen.errors import DerivationError, ModelError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Rank, holds_identically
 from eomgen.mechanics.dynamics import (
     EquationsOfMotion,
     Explicit,
+    Extent,
     System,
     WellPosed,
     assembled_by_recursion,
+    division_of,
 )
 from eomgen.mechanics.free_bodies.balance import Balance
 from eomgen.mechanics.free_bodies.solution import (
@@ -39,6 +41,7 @@ from eomgen.symbolic.expression import (
     ScalarRow,
     function,
     gradient,
+    holds_op,
     inner,
     is_zero,
     over,
@@ -46,7 +49,7 @@ from eomgen.symbolic.expression import (
     sqrt,
     substituted,
 )
-from eomgen.symbolic.numeric import tolerances
+from eomgen.symbolic.numeric import PIECEWISE, tolerances
 
 # -------- friction --------------------------------------------------------------------------------------------
 # Equations of motion -> the same with friction: the contacts' own reactions solved together with the accelerations.
@@ -91,6 +94,28 @@ def equations_of_motion(system: System) -> EquationsOfMotion:
         DerivationError: as `with_friction`.
     """
     return with_friction(assembled_by_recursion(system))
+
+
+def where_in_pieces(
+    system: System,
+    scalars: Sequence[Scalar],
+    decide: Callable[[Sequence[Scalar], Mapping[Node, Any]], bool],
+) -> Extent | None:
+    """Extent of a property of scalars, by their form in each piece and a state there.
+
+    None where they have no pieces, or not all are known: the equations of the system say where each is.
+    """
+    if not any(holds_op(x, *PIECEWISE) for x in scalars):
+        return None
+    key = (system.symbols.u, system.constraints.J, system.constraints.sigma)
+    known = system.scope.graph.found(where_in_pieces)
+    try:
+        if key not in known:
+            known[key] = equations_of_motion(system)
+        division = division_of(known[key], scalars)
+    except (DerivationError, ModelError):
+        return None
+    return None if division is None or not division.found else division.where_holds(scalars, decide)
 
 
 def with_friction(equations: EquationsOfMotion) -> EquationsOfMotion:

@@ -99,6 +99,11 @@ class SmallMotions:
         return restricted(field, whole, self.wanted, decided)
 
     @property
+    def equations(self) -> LinearEquations:
+        """M, C, K, B, F, E: exact where they are known so, else floats."""
+        return self.exact or self.numbers
+
+    @property
     def is_second_order(self) -> bool:
         """True if the equations have the form M q'' + C q' + K q = B w."""
         return is_second_order(self.numbers)

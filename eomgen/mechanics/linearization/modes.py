@@ -15,7 +15,12 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.linearization.linearization import SmallMotions, motions_beside
 from eomgen.mechanics.linearization.reduction import LinearEquations, floats
-from eomgen.mechanics.linearization.transfer import TransferFunction, transfer_functions, transfers_in_numbers
+from eomgen.mechanics.linearization.transfer import (
+    StateMatrices,
+    TransferFunction,
+    transfer_functions,
+    transfers_in_numbers,
+)
 from eomgen.mechanics.state import Entries, Numbers
 from eomgen.symbolic.exact import Conditions, Polynomial, book_form, simplest
 from eomgen.symbolic.expression import Fraction, Node, Scalar, is_zero
@@ -193,7 +198,7 @@ class Modes:
         Raises:
             DerivationError: a coordinate that is none of the linearized system.
         """
-        equations = self.small.exact or self.small.numbers
+        equations = self.small.equations
         row, column = self.place(function, *names)
         return equations.matrix(function)[row][column], self.small.exact is not None
 
@@ -203,7 +208,7 @@ class Modes:
         Raises:
             DerivationError: a coordinate that is none of the linearized system.
         """
-        equations = self.small.exact or self.small.numbers
+        equations = self.small.equations
         rows = {u.name.removesuffix("'"): k for k, u in enumerate(equations.speeds)}
         if self.small.is_second_order:
             rows |= {q.name: k for k, q in enumerate(equations.coordinates)}
@@ -230,12 +235,21 @@ class Modes:
     @property
     def symmetric_parts(self) -> dict[str, list[list[Any]]]:
         """D and G of C = D + G, and the symmetric and circulatory part of K = S + H."""
-        equations = self.small.exact or self.small.numbers
+        equations = self.small.equations
         return {
             name: part
             for letter, names in (("C", "DG"), ("K", "SH"))
             for name, part in zip(names, _parted(getattr(equations, letter)), strict=True)
         }
+
+    def state_spaces(self, outputs: Sequence[str]) -> tuple[StateMatrices | None, StateMatrices | None]:
+        """(exact state space, in numbers), as far as they are known."""
+        small = self.small
+        exact = StateMatrices.exact(small, outputs)
+        if not small.reference.valued:
+            return exact, None
+        A, B = small.state_matrix.tolist(), small.input_matrix.tolist()
+        return exact, StateMatrices.of(small.numbers, A, B, outputs)
 
     def tidy(self, x: Any) -> Any:
         """An entry in its shortest form."""

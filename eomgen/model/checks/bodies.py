@@ -324,7 +324,7 @@ def _value(leaf: Leaf, expression: Expression, values: dict[str, AnyNumber]) -> 
     try:
         expression.evaluate(values)
     except ExpressionError as error:
-        yield Diagnostic(leaf.path, f"{whereabouts(leaf.path)}: {error.what}", error.fix, error.column, error.length)
+        yield Diagnostic(leaf.path, f"{leaf.whereabouts}: {error.what}", error.fix, error.column, error.length)
 
 
 def _sign(leaf: Leaf, expression: Expression, number: Any) -> Iterator[Diagnostic]:
@@ -345,7 +345,7 @@ def _directions(catalog: Catalog, values: dict[str, AnyNumber]) -> Iterator[Diag
             continue
         named = any(component.literal is None for component in leaf.value)
         if named and all(component.value_at(values) == 0 for component in leaf.value):
-            yield Diagnostic(leaf.path, f"{whereabouts(leaf.path)}: a direction cannot be zero", "give a direction")
+            yield Diagnostic(leaf.path, f"{leaf.whereabouts}: a direction cannot be zero", "give a direction")
 
 
 def _crossing(catalog: Catalog, values: dict[str, AnyNumber]) -> Iterator[Diagnostic]:

@@ -11,7 +11,7 @@ from eomgen.errors import ExpressionError
 from eomgen.model.arithmetic import in_order
 from eomgen.model.catalog import OBJECT_TABLES, SYMBOL_TABLES, Catalog
 from eomgen.model.declared_speeds import begun_speeds
-from eomgen.model.diagnostics import Diagnostic, article, nearest, one_of, whereabouts
+from eomgen.model.diagnostics import Diagnostic, article, nearest, one_of
 from eomgen.model.fields import (
     EVERYTHING,
     STATEMENT,
@@ -169,7 +169,7 @@ def _point(catalog: Catalog, leaf: Leaf) -> Iterator[Diagnostic]:
 def _reported(leaf: Leaf, wrong: tuple[str, str, int, int] | None) -> Iterator[Diagnostic]:
     if wrong is not None:
         what, fix, column, length = wrong
-        yield Diagnostic(leaf.path, f"{what} (in {whereabouts(leaf.path)})", fix, column, length)
+        yield Diagnostic(leaf.path, f"{what} (in {leaf.whereabouts})", fix, column, length)
 
 
 def _own_point(catalog: Catalog, leaf: Leaf) -> Iterator[Diagnostic]:
@@ -228,7 +228,7 @@ def _declared(table: str, what: str) -> Callable[[Catalog, Leaf], Iterator[Diagn
     def check(catalog: Catalog, leaf: Leaf) -> Iterator[Diagnostic]:
         known = catalog.table(table)
         if leaf.value not in known:
-            wrong = f"unknown {what} '{leaf.value}' in {whereabouts(leaf.path)}"
+            wrong = f"unknown {what} '{leaf.value}' in {leaf.whereabouts}"
             yield Diagnostic(leaf.path, wrong, nearest(leaf.value, known), 0, len(leaf.value))
 
     return check
@@ -281,17 +281,17 @@ def _vector(catalog: Catalog, leaf: Leaf) -> Iterator[Diagnostic]:
         return
     if isinstance(value, str):
         if value not in catalog.table("points"):
-            what = f"unknown point of the ground '{value}' in {whereabouts(leaf.path)}"
+            what = f"unknown point of the ground '{value}' in {leaf.whereabouts}"
             fix = nearest(value, catalog.table("points")) or "give coordinates, or a point of [points]"
             yield Diagnostic(leaf.path, what, fix, 0, len(value))
         return
     needed = rule.length or {"plane": 2, "space": 3}.get(space)
     if needed is not None and len(value) != needed:
-        what = f"{whereabouts(leaf.path)}: {needed} components are needed, not {len(value)}"
+        what = f"{leaf.whereabouts}: {needed} components are needed, not {len(value)}"
         where = "" if rule.length else f"the model is in the {space}" if space == "plane" else "the model is in space"
         yield Diagnostic(leaf.path, what, where)
     elif rule.nonzero and all(c.literal == 0 for c in value):
-        yield Diagnostic(leaf.path, f"{whereabouts(leaf.path)}: a direction cannot be zero", "give a direction")
+        yield Diagnostic(leaf.path, f"{leaf.whereabouts}: a direction cannot be zero", "give a direction")
     elif rule.nonzero and rule.length == 3 and space == "plane" and [c.literal for c in value] != [0, 0, 1]:
         yield Diagnostic(leaf.path, "in the plane everything turns about z", f"leave out '{leaf.path[-1]}'")
 
@@ -299,11 +299,11 @@ def _vector(catalog: Catalog, leaf: Leaf) -> Iterator[Diagnostic]:
 def _axial(catalog: Catalog, leaf: Leaf) -> Iterator[Diagnostic]:
     count, space = len(leaf.value), catalog.model.space
     if space == "plane" and count != 1:
-        what = f"{whereabouts(leaf.path)}: one number about z is needed in the plane, not {count}"
+        what = f"{leaf.whereabouts}: one number about z is needed in the plane, not {count}"
         yield Diagnostic(leaf.path, what, "give the one about z")
     elif space == "space" and count not in leaf.rule.lengths:
         needed = " or ".join(map(str, leaf.rule.lengths))
-        yield Diagnostic(leaf.path, f"{whereabouts(leaf.path)}: {needed} numbers are needed in space, not {count}")
+        yield Diagnostic(leaf.path, f"{leaf.whereabouts}: {needed} numbers are needed in space, not {count}")
 
 
 # -------- formulas --------------------------------------------------------------------------------------------
@@ -325,7 +325,7 @@ def formulas(catalog: Catalog) -> Iterator[Diagnostic]:
                     yield _misplaced(catalog, leaf, name, column, allowed)
         for name in expression.parts:
             if name in catalog.symbols:
-                what = f"a part of {whereabouts(leaf.path)} is called '{name}', like {article(catalog.symbols[name])}"
+                what = f"a part of {leaf.whereabouts} is called '{name}', like {article(catalog.symbols[name])}"
                 yield Diagnostic(leaf.path, what, "give it another name")
         unit = leaf.part.unit if leaf.part is not None and leaf.path[-1] in leaf.part.in_unit else None
         if unit is not None and expression.names <= allowed and is_mixed(expression, unit):
@@ -336,7 +336,7 @@ def formulas(catalog: Catalog) -> Iterator[Diagnostic]:
 def _misplaced(catalog: Catalog, leaf: Leaf, name: str, column: int, allowed: frozenset[str]) -> Diagnostic:
     base = name.rstrip("'")
     kind = catalog.symbols.get(base)
-    where = whereabouts(leaf.path)
+    where = leaf.whereabouts
     if kind is None:
         other = meant_name(name, allowed)
         fix = (

@@ -78,7 +78,7 @@ class Linearization(Result):
     @property
     def equations(self) -> LinearEquations:
         """M, C, K, B, F, E: exact where they are known so, else floats."""
-        return self.small.exact or self.small.numbers
+        return self.small.equations
 
     @property
     def is_exact(self) -> bool:
@@ -135,18 +135,10 @@ class Linearization(Result):
             DerivationError: they are known in numbers only, and parameters have no values.
         """
         wanted = tuple((outputs,) if isinstance(outputs, str) else outputs) or self.coordinates
-        exact, numbers = self._state_spaces(wanted)
+        exact, numbers = self.modes.state_spaces(wanted)
         if exact is None:
             self._refuse_unvalued()
         return state_space_of(exact, numbers)
-
-    def _state_spaces(self, outputs: Sequence[str]) -> tuple[StateMatrices | None, StateMatrices | None]:
-        """(exact, in numbers), as far as they are known."""
-        exact = StateMatrices.exact(self.small, outputs)
-        if not self.valued:
-            return exact, None
-        A, B = self.small.state_matrix.tolist(), self.small.input_matrix.tolist()
-        return exact, StateMatrices.of(self.small.numbers, A, B, outputs)
 
     @property
     def spectrum(self) -> Spectrum:
@@ -356,7 +348,7 @@ class Linearization(Result):
 
     def _state_space_entry(self) -> dict[str, Any]:
         """The state space with the coordinates as outputs."""
-        exact, numbers = self._state_spaces(self.coordinates)
+        exact, numbers = self.modes.state_spaces(self.coordinates)
         return {
             "states": [x.name for x in self.equations.moving],
             "outputs": list(self.coordinates),

@@ -39,7 +39,6 @@ from eomgen.mechanics.linearization import (
     Mode,
     Modes,
     ReferenceMotion,
-    StateMatrices,
     TransferFunction,
 )
 from eomgen.mechanics.state import Entries
@@ -91,7 +90,7 @@ def linearization_steps(modes: Modes) -> tuple[Step, ...]:
 
 def _equations(modes: Modes) -> Step:
     small = modes.small
-    e = small.exact or small.numbers
+    e = small.equations
     constrained = len(e.coordinates) < len(e.all) or bool(small.reference.system.constraints.closing)
     statements: list[Statement] = [
         prose(
@@ -144,13 +143,13 @@ def _equations(modes: Modes) -> Step:
 
 def _rows(modes: Modes) -> Sequence[Node]:
     """Symbols of the rows: the coordinates for equations of second order, else the speeds."""
-    e = modes.small.exact or modes.small.numbers
+    e = modes.small.equations
     return e.coordinates if modes.small.is_second_order else e.speeds
 
 
 def _rates(modes: Modes, undamped: bool) -> list[Statement]:
     """C, in its damping and its gyroscopic part where it has both."""
-    e = modes.small.exact or modes.small.numbers
+    e = modes.small.equations
     if undamped:
         return []
     if not modes.small.is_second_order:
@@ -381,7 +380,7 @@ def _or_numbers(modes: Modes, scalars: Sequence[Scalar]) -> list[Side]:
 
 def _state_space(modes: Modes) -> tuple[Step, ...]:
     """A, B, C_y, D_y of the coordinates as outputs, exact where they are short, else in numbers; without inputs A."""
-    e = modes.small.exact or modes.small.numbers
+    e = modes.small.equations
     shown = _state_matrices(modes) if len(e.speeds) <= MOST_WRITTEN else ()
     if not shown:
         return ()
@@ -410,11 +409,7 @@ def _state_matrices(modes: Modes) -> tuple[Matrix, ...]:
     """State matrices that are not empty: exact where all can be printed, else in numbers; () without either."""
     small = modes.small
     outputs = tuple(q.name for q in small.numbers.coordinates)
-    ways = [StateMatrices.exact(small, outputs)]
-    if small.reference.valued:
-        A, B = small.state_matrix.tolist(), small.input_matrix.tolist()
-        ways.append(StateMatrices.of(small.numbers, A, B, outputs))
-    for found in ways:
+    for found in modes.state_spaces(outputs):
         if found is not None:
             parts = (found.A, found.B, found.C_y, found.D_y) if found.inputs else (found.A,)
             shown = [matrix_of([[modes.written(x) for x in row] for row in part]) for part in parts]

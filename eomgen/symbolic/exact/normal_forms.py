@@ -121,17 +121,16 @@ def readable(x: Scalar, limit: int = Work.ANSWER, positive: Collection[Node] = (
     return readable_all((x,), limit, positive)[0]
 
 
-def written_terms(x: Scalar, limit: int, positive: Collection[Node] = ()) -> tuple[Scalar, ...]:
-    """The terms of x multiplied out, each as it is written.
-
-    Raises:
-        TooLarge: that takes more than `limit` products of terms.
-    """
+def written_terms(x: Scalar, limit: int, positive: Collection[Node] = ()) -> tuple[Scalar, ...] | None:
+    """The terms of x multiplied out, each as it is written; None: that takes more than `limit` products of terms."""
     if type(x) is not Node:
         return () if x == 0 else (x,)
     expansion = Expansion(x.graph, limit, positive)
     writer = Writer(expansion)
-    return tuple(writer.term(*each) for each in writer.written(expansion.of(x)))
+    try:
+        return tuple(writer.term(*each) for each in writer.written(expansion.of(x)))
+    except TooLarge:
+        return None
 
 
 def readable_all(

@@ -146,9 +146,6 @@ from eomgen.symbolic.expression.text import LONGEST as LONGEST
 from eomgen.symbolic.expression.text import LONGEST_WITH_PARTS as LONGEST_WITH_PARTS
 from eomgen.symbolic.expression.text import MOST_DIGITS as MOST_DIGITS
 
-# functions and ends of names that stand for dots: how many
-from eomgen.symbolic.expression.text import RATES as RATES
-
 # what dT/dq' is read as: slope_of(T, q'), of an energy by a coordinate or its rate
 from eomgen.symbolic.expression.text import SLOPE as SLOPE
 from eomgen.symbolic.expression.text import as_expression as as_expression
