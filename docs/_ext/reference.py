@@ -19,7 +19,6 @@ sys.path[:0] = [str(ROOT)]
 
 from eomgen.model import constraints, forces, joints, outputs, shapes  # noqa: E402
 from eomgen.model.constraints.rolling import Circle, Track  # noqa: E402
-from eomgen.model.constraints.string import Wrap  # noqa: E402
 from eomgen.model.diagnostics import article  # noqa: E402
 from eomgen.model.expansion import PartsRule, RepetitionRule  # noqa: E402
 from eomgen.model.fields import (  # noqa: E402
@@ -52,6 +51,7 @@ from eomgen.model.kinds import (  # noqa: E402
     Resistance,
     SlideFriction,
     TurnFriction,
+    Wrap,
 )
 from eomgen.model.model import Model  # noqa: E402
 from eomgen.model.part import PartRule, SeamRule, Slot, meanings  # noqa: E402

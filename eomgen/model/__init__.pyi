@@ -91,6 +91,9 @@ from eomgen.model.forces.base import Act as Act
 # A couple on a body, in the axes of the ground or of the body that `axes` names; one entry: about z [N m]
 from eomgen.model.forces.base import CoupleOn as CoupleOn
 
+# One tension along the way of a rope, of its stretch
+from eomgen.model.forces.base import ElasticThread as ElasticThread
+
 # Action between two points, or a couple that turns two bodies relative to one another
 from eomgen.model.forces.base import Element as Element
 

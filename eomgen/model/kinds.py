@@ -17,6 +17,7 @@ from eomgen.model.fields import (
     STATE,
     TIME,
     AxialRule,
+    EitherRule,
     FlagRule,
     FormulaRule,
     Leaf,
@@ -172,6 +173,35 @@ class ReactionSymbolsRule:
 
 SymbolField = Annotated[Symbol, SYMBOL]
 ReactionSymbolsField = Annotated[ReactionSymbols, ReactionSymbolsRule()]
+
+
+# -------- wraps -----------------------------------------------------------------------------------------------
+# The way of a string or rope from point to point, over pulleys, pegs and drums.
+
+
+@dataclass(frozen=True, kw_only=True)
+class Wrap(Part):
+    """A round thing that the string lies on.
+
+    Args:
+        body: a pulley, about its origin.
+        radius: None: the shape's [m].
+        turn: the sense in which one travels round it.
+        axis: in space, about which it is round and the sense is seen, in the axes of the body or the ground; None: z.
+        slip: the string slides on it: one tension through.
+        at: instead of a body: a place of the ground about which there is a peg [m].
+    """
+
+    title: ClassVar[str] = "a wrap of the string"
+    body: BodyName | None = None
+    at: GroundPlace | None = None
+    radius: Radius | None = None
+    turn: Turn | None = None
+    axis: SpaceDirection | None = None
+    slip: Flag = False
+
+
+Route = Annotated[tuple[str | Wrap, ...], ListRule(EitherRule(NameRule("point"), PartRule(Wrap)), least=2)]
 
 
 # -------- friction --------------------------------------------------------------------------------------------

@@ -120,7 +120,8 @@ def _known(catalog: Catalog, kind: str) -> list[str]:
     between = {"force between points": "points", "force between bodies": "bodies"}.get(kind)
     if between is not None:
         forces = catalog.table("forces").items()
-        return [name for name, part in forces if part and part.element and getattr(part.element, between)]
+        drawn = [name for name, part in forces if part and part.element and getattr(part.element, between)]
+        return drawn + [name for name, part in forces if part and part.tight and between == "points"]
     if kind == DRY_JOINT:
         return list(catalog.joints_with_friction)
     tables = {

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
 from functools import cached_property
-from itertools import pairwise
 from random import Random
 from typing import Any
 
@@ -21,6 +19,7 @@ from eomgen.mechanics.kinematics import (
 from eomgen.model import (
     Act,
     CoupleOn,
+    ElasticThread,
     Element,
     FlowOfMass,
     GivenEnergy,
@@ -29,9 +28,9 @@ from eomgen.model import (
     PushAt,
     PushOfMass,
     PushOnCoordinate,
-    Thread,
     UniformField,
 )
+from eomgen.proof.declared_threads import StretchedRope
 from eomgen.proof.in_numbers import (
     STEP,
     InNumbers,
@@ -44,7 +43,6 @@ from eomgen.proof.in_numbers import (
     pushes_of,
     way_through,
 )
-from eomgen.proof.states import refuse_open
 from eomgen.symbolic.expression import Fraction, Pose, Scalar, State, Twist, Vector, is_zero
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 
@@ -64,7 +62,6 @@ Placed = tuple[str | None, tuple[Scalar, ...], Vector]
 """(body, a place of it as a function of the coordinates, the force there in ground axes)"""
 HALF = Fraction(1, 2)
 SIMPSON = ((0, 1), (1, 4), (2, 1))  # (halves of the way, sixths of the length)
-STRUNG = "strings and links touch their guides, keep their length and pull along it"
 
 
 def acting_otherwise(system: System, state: State) -> str:
@@ -184,6 +181,11 @@ class _Declared(InNumbers):
             for body, sign in zip(act.bodies, (1, -1), strict=True):
                 if body is not None:
                     yield from self._of_couple(body, Vector((0, 0, sign * pull)))
+        elif isinstance(act, ElasticThread):
+            for stop, at, pull in StretchedRope(self.system, self.state, act).pulls():
+                yield from zip(stop.place, pull, strict=True)
+                if stop.body is not None:
+                    yield from self._of_couple(stop.body, (at - stop.center).cross(pull))
         else:
             for _, place, force in self.placed(act):
                 yield from zip(place, force, strict=True)
@@ -217,6 +219,9 @@ class _Declared(InNumbers):
                 pull = ActingElement(self.system, self.state, act).law[0]
                 for body, sign in zip(act.bodies, (1, -1), strict=True):
                     add_push(found, body, Vector((0, 0, sign * pull)), Vector.ZERO)
+            elif isinstance(act, ElasticThread):
+                for stop, at, pull in StretchedRope(self.system, self.state, act).pulls():
+                    add_push(found, stop.body, at.cross(pull), pull)
             elif not isinstance(act, (PushOnCoordinate, GivenEnergy)):
                 for body, place, force in self.placed(act):
                     add_push(found, body, self.vector(place).cross(force), force)
@@ -323,8 +328,11 @@ def undeclared(system: System, state: State) -> str:
 
 def acting(system: System, state: State, force: str) -> Any:
     """Pull of an element [N], or its moment on the second body [N m], by its declaration at a state."""
-    (element,) = (each for applied, each in elements_of(system) if applied.name == force)
-    return ActingElement(system, state, element).law[0]
+    declared = system.scope.model.forces[force]
+    if declared.element is None:
+        (rope,) = (act for act in declared.acts if isinstance(act, ElasticThread))
+        return StretchedRope(system, state, rope).tension
+    return ActingElement(system, state, declared.element).law[0]
 
 
 def _in_joint(system: System, state: State, effort: JointEffort) -> str:
@@ -476,6 +484,8 @@ class ActingElement(InNumbers):
         k, c = self.at((scope.value(element.stiffness), scope.value(element.damping)))
         length, rate = self.measured
         pull, energy = c * rate, None
+        if element.pushes:
+            return self._pushed(self._slack - length, rate)
         if element.stiffness is not None:
             stretch = length - self._slack
             pull, energy = pull + k * stretch, k * stretch * stretch / 2
@@ -484,6 +494,16 @@ class ActingElement(InNumbers):
             law = self.scene.value_at(element.pull, {"r": r, "r'": r1})
             pull += evaluate((law,), {**self.state, r: length, r1: rate}, fifty_digits())[0]
         return pull, energy
+
+    def _pushed(self, x: Any, rate: Any) -> tuple[Any, Any]:
+        """(T, V) of a bumper that is compressed by x: - (k x^n (1 + a x') + d x') where both are above 0."""
+        element, value = self.element, self.system.scope.value
+        k, c, a = self.at((value(element.stiffness), value(element.damping), value(element.dissipation)))
+        n = 1 if element.power is None else self.one(value(element.power))
+        if x <= 0:
+            return 0 * x, 0 * x
+        push = k * x**n
+        return -max(push * max(1 - a * rate, 0) - c * rate, 0 * x), push * x / (n + 1)
 
     @property
     def _slack(self) -> Any:
@@ -509,182 +529,3 @@ class ActingElement(InNumbers):
             f: Vector = sign * pull * self.direction
             add_push(found, self.scene.place(point)[0], place.cross(f), f)
         return found
-
-
-# -------- strands ---------------------------------------------------------------------------------------------
-# System, state -> whether strings and links run and pull as they are declared, in numbers.
-#
-#     D = c_2 - c_1,   h = a_1 - a_2:   d is D turned by - asin(h / |D|) about n,   touching at c + a n x d
-#
-# a is the radius where one travels round clockwise about n, minus the radius counter-clockwise, 0 of a point. A unit
-# of tension pulls + d where a strand begins and - d where it ends, through eyelets and what slips in the strands
-# beyond; the string stays as long as it is, - sum d . (v_2 - v_1) = 0 of the material that it touches; a link is as
-# long as it says.
-
-
-def threads_of(system: System) -> dict[str, Thread]:
-    """Threads of strings and links, by the name of their constraint, where that is closed."""
-    closed = {row.constraint for row in system.constraints.rows}
-    threads = {
-        name: constraint.thread() for name, constraint in system.scope.model.constraints.items() if name in closed
-    }
-    return {name: thread for name, thread in threads.items() if thread is not None}
-
-
-def strung_otherwise(system: System, state: State) -> str:
-    """Message that names a string or link which runs or pulls otherwise than it is declared; "".
-
-    Raises:
-        NoValue: something has no value there, or the constraints do not hold.
-    """
-    refuse_open(system, state)
-    for name, thread in threads_of(system).items():
-        if wrong := _Strung(system, state, name, thread).wrong:
-            return f"'{name}' {wrong}"
-    return ""
-
-
-@dataclass(frozen=True)
-class _Stop:
-    """Stop of a thread: its place over the graph; the centre, the radius a (0 for a point) and the axis in numbers."""
-
-    body: str | None
-    place: Vector
-    center: Vector
-    a: Any
-    axis: Vector
-    passes: bool
-
-    def touched(self, d: Vector) -> Vector:
-        touched: Vector = self.center + self.axis.cross(d) * self.a
-        return touched
-
-
-@dataclass(frozen=True)
-class _Strung(InNumbers):
-    name: str
-    thread: Thread
-
-    @property
-    def wrong(self) -> str:
-        rows = [
-            row for row in self.system.constraints.rows if row.constraint == self.name and row.component == "tension"
-        ]
-        if len(rows) != len(self._ropes):
-            return f"has {len(rows)} tensions for {len(self._ropes)}"
-        for row, rope in zip(rows, self._ropes, strict=True):
-            due: Pushes = {}
-            for first, second, d in rope:
-                add_push(due, first.body, first.touched(d).cross(d), d)
-                add_push(due, second.body, second.touched(d).cross(-d), -d)
-            size = 1 + max(first.center.largest for first, *_ in rope)
-            stated = pushes_of(self.motion, self.state, row.pushes)
-            if body := pushed_otherwise(stated, due, size):
-                return f"pulls '{body}' otherwise than it runs"
-            given_out: Any = sum((self._lengthening(*strand) for strand in rope), start=-self._paid_out)
-            if self._rigid and row.pushes and abs(given_out + self.one(row.velocity)) > tolerances.ZERO_AT_50 * size:
-                return "does not stay as long as it is"
-        return self._wrong_length
-
-    @property
-    def _paid_out(self) -> Any:
-        """Rate of the declared length, by the difference of two instants."""
-        if self.thread.length is None:
-            return 0
-        length, t = self._scene.value(self.thread.length), self.system.symbols.t
-        step = fifty_digits().number(Fraction(1, 10**15))
-        before, after = (
-            replace(self, state={**self.state, t: self.one(t) + sign * step}).one(length) for sign in (-1, 1)
-        )
-        return (after - before) / (2 * step)
-
-    @property
-    def _wrong_length(self) -> str:
-        """Message if the length is not the declared one; ""."""
-        if self.thread.length is None:
-            return ""
-        declared = self.one(self._scene.value(self.thread.length))
-        first, second = (stop.center for stop in self._stops)
-        apart: Vector = second - first
-        square: Any = apart @ apart
-        wrong = abs(square - declared**2) > tolerances.COMPUTED * (1 + square)
-        return f"is {float(square) ** 0.5:.10g} long for {float(declared):.10g}" if wrong else ""
-
-    @cached_property
-    def _ropes(self) -> list[list[tuple[_Stop, _Stop, Vector]]]:
-        """The strands of one tension each: (from, to, direction)."""
-        ways = self.thread.ways or (None,) * (len(self._stops) - 1)
-        ropes: list[list[tuple[_Stop, _Stop, Vector]]] = []
-        for (first, second), way in zip(pairwise(self._stops), ways, strict=True):
-            strand = (first, second, self._direction(first, second) if way is None else self._typed(way))
-            if ropes and first.passes:
-                ropes[-1].append(strand)
-            else:
-                ropes.append([strand])
-        return ropes
-
-    def _direction(self, first: _Stop, second: _Stop) -> Vector:
-        """Direction of the line that is tangent to both stops."""
-        D: Vector = second.center - first.center
-        self._refuse_turned_over(first, second, D)
-        along = direction_at(D)
-        n = first.axis if first.a != 0 else second.axis
-        same: Any = n @ second.axis
-        offset: Any = first.a - (same if second.a != 0 else 0) * second.a
-        distance: Any = D @ along
-        if abs(offset) > distance:
-            raise NoValue("one wrap lies within the other")
-        functions = fifty_digits().functions
-        lean = -functions["asin"](offset / distance)
-        direction: Vector = along * functions["cos"](lean) + n.cross(along) * functions["sin"](lean)
-        return direction
-
-    def _refuse_turned_over(self, first: _Stop, second: _Stop, D: Vector) -> None:
-        """Raises NoValue where a strand runs backwards: a line along an axis has the sense that it has at the start."""
-        at_start = [self._scene.value_at_start(x) for x in second.place - first.place]
-        here: list[Any] = list(D)
-        if sum(float(x) * (y or 0.0) for x, y in zip(here, at_start, strict=True)) < 0:
-            raise NoValue("a strand runs the other way than at the start")
-
-    def _typed(self, way: Any) -> Vector:
-        """A direction that is given, of length 1."""
-        named = {"up": (0, 1, 0), "down": (0, -1, 0), "left": (-1, 0, 0), "right": (1, 0, 0)}
-        return self.vector(named[way]) if isinstance(way, str) else direction_at(self.vector(self._scene.vector(way)))
-
-    def _lengthening(self, first: _Stop, second: _Stop, d: Vector) -> Any:
-        """Relative velocity d . (v_2 - v_1) of the two surfaces."""
-        return d @ (self.velocity(second.body, second.touched(d)) - self.velocity(first.body, first.touched(d)))
-
-    # -- as it is declared -----------------------------------------------------------------------------------
-
-    @property
-    def _scene(self) -> SystemScene:
-        return SystemScene(self.motion, f"constraints.{self.name}")
-
-    @cached_property
-    def _stops(self) -> list[_Stop]:
-        return list(self._declared())
-
-    def _declared(self) -> Iterator[_Stop]:
-        scene, z = self._scene, self.vector((0, 0, 1))
-        for item in self.thread.stops:
-            if isinstance(item, str):
-                body, _ = place = scene.place(item)
-                r = scene.position(place)
-                yield _Stop(body, r, self.vector(r), 0, z, True)
-                continue
-            fixed = item.body is None
-            r = scene.ground_place(item.at) if fixed else scene.position(scene.own_place(item.body, None))
-            radius = scene.radius(item.body) if item.radius is None else scene.value(item.radius)
-            axis = z if item.axis is None else direction_at(self.vector(scene.vector(item.axis)))
-            if not (fixed or scene.plane):
-                axis = Vector(self.vector(row) @ axis for row in scene.orientation(item.body))
-            a = self.one(radius)
-            yield _Stop(item.body, r, self.vector(r), -a if item.turn == "ccw" else a, axis, bool(item.slip))
-
-    @property
-    def _rigid(self) -> bool:
-        """True if all stops are fixed in their bodies."""
-        named = [self._scene.place(item) for item in self.thread.stops if isinstance(item, str)]
-        named += [self._scene.own_place(x.body, None) for x in self.thread.stops if not isinstance(x, str) and x.body]
-        return not any(self.motion.moves(place) for _, place in named)

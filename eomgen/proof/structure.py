@@ -24,7 +24,8 @@ from eomgen.mechanics.free_bodies import NamedReaction, imbalance
 from eomgen.mechanics.statics import InfluenceLine, SectionForces, SectionPiece, StaticReactions
 from eomgen.proof.at_a_state import balanced_least
 from eomgen.proof.check import Certificate, Check, Tally, attempted, checked, first_wrong
-from eomgen.proof.declared_loads import STRUNG, acting_otherwise, strung_otherwise, threads_of
+from eomgen.proof.declared_loads import acting_otherwise
+from eomgen.proof.declared_threads import STRUNG, strung_otherwise, threads_of
 from eomgen.proof.drawn_panels import DrawnCurve, DrawnPanel, said_of
 from eomgen.proof.drawn_structure import ReportedPush, space_sections_drawn, structure_drawn
 from eomgen.proof.free_bodies import named_otherwise

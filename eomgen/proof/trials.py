@@ -20,14 +20,12 @@ from eomgen.mechanics.kinematics import ContactMode, spin_between
 from eomgen.proof.check import Check, attempted, checked, unchecked
 from eomgen.proof.contact_phases import leaving_at_start, other_friction, pushing_otherwise
 from eomgen.proof.declared_loads import (
-    STRUNG,
     acting_otherwise,
     elements_of,
-    strung_otherwise,
-    threads_of,
     undeclared,
     working_otherwise,
 )
+from eomgen.proof.declared_threads import STRUNG, strung_otherwise, threads_of
 from eomgen.proof.degrees_of_freedom import open_at_start, pulled_at_start, rows_that_stay, springs_of_the_start
 from eomgen.proof.free_bodies import (
     Demand,

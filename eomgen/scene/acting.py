@@ -25,7 +25,8 @@ def applied_marks(system: System) -> Iterator[Mark]:
     """Forces and couples at bodies, but for weights, springs and dampers, and drives of joints."""
     motion, model = system.motion, system.scope.model
     for applied in system.loads.applied:
-        if model.forces[applied.name].element is not None:
+        force = model.forces[applied.name]
+        if force.element is not None or force.strands_at(SystemScene(motion, f"forces.{applied.name}")):
             continue
         for spread in applied.spread:
             ends = _known(system, spread.at_start), _known(system, spread.at_end)

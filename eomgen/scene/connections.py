@@ -177,6 +177,8 @@ def force_elements(system: System) -> list[Mark]:
     motion, found, sides = system.motion, list[Mark](), _sides(system)
     for name, force in system.scope.model.forces.items():
         element = force.element
+        if strands := force.strands_at(SystemScene(motion, f"forces.{name}")):
+            found += [*string_marks(strands, name), *_rims(system, strands), *_fastened(system, strands, name)]
         if element is None:
             continue
         for body in element.bodies[1:] if element.stiffness is not None else ():

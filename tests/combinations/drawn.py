@@ -699,7 +699,7 @@ class Drawing:
         q = rng.choice([x for x in free if self.kinds[x] != "pure"] or list(self.coordinates))
         unit = "d*" if self.kinds[q] == "length" else ""
         strength = "F1" if "F1" in self.inputs else "F0*sin(w*t)"
-        if other == "anchor" and how.startswith(("spring", "damper", "between")):
+        if other == "anchor" and how.startswith(("spring", "damper", "between", "bumper", "rope")):
             self.points["anchor"] = self.v(-1.3, 0.9, 0.7)
         two = [other, point]
         if how == "spring_moved":
@@ -748,6 +748,20 @@ class Drawing:
                 "value": f"-c*{q}'" if unit else f"-ct*{q}' + {strength}*d",
             },
             "values": {"kind": "force", "point": point, "force": self.v(f"K_{name}({q})", f"K_{name}'({q})/2", "F0/3")},
+            "bumper": {
+                "kind": "bumper",
+                "points": two,
+                "stiffness": "k",
+                "length": "4*d",
+                **rng.choice(({}, {"exponent": 1.5, "dissipation": 0.3}, {"damping": "c/5"})),
+            },
+            "rope": {
+                "kind": "rope",
+                "path": two,
+                "stiffness": "k",
+                "length": rng.choice(["l/5", "l*(1 + w*t)/9"]),
+                **rng.choice(({}, {"damping": "c/5"})),
+            },
             "mass_flow": {
                 "kind": "mass_flow",
                 "point": point,

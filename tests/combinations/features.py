@@ -19,7 +19,8 @@ SHAPES = (
 FORCES = (
     "gravity", "force", "follower", "couple", "distributed", "spring", "spring_along", "spring_start", "spring_moved",
     "damper", "damper_along", "torsion_spring", "torsion_damper", "between", "potential", "kinetic", "generalized",
-    "values", "mass_flow", "rain", "none",
+    "values", "mass_flow", "rain", "bumper",
+    "rope", "none",
 )  # fmt: skip
 
 FACTORS: dict[str, tuple[str, ...]] = {

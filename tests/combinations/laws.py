@@ -551,6 +551,28 @@ def _force(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
     return [Load(name, body, _now(place), force, moving=place)] if body else []
 
 
+def _bumper(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
+    """k x^n (1 + a x') + d x' against a compression by x > 0, and never below 0."""
+    k, l0, n, a, d = (
+        now.model.number(f.get(x, y))
+        for x, y in (("stiffness", 0), ("length", 0), ("exponent", 1), ("dissipation", 0), ("damping", 0))
+    )
+
+    def pull(r: float, rate: float) -> float:
+        x = l0 - r
+        return -max(0.0, k * x**n * (1 - a * rate) - d * rate) if x > 0 else 0.0
+
+    return _pair(name, now, f["points"], pull, f.get("along"))
+
+
+def _rope(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
+    """k s + c s' of a rope between two points where its stretch s > 0, and never below 0."""
+    k, c = (_number(now.value(f.get(x, 0))) for x in ("stiffness", "damping"))
+    slack = jet(now.value(f["length"])).c
+    l0, paid = float(slack[0][0]), float(slack[1][0]) if slack.shape[-1] > 1 or len(slack) > 1 else 0.0
+    return _pair(name, now, f["path"], lambda r, v: max(0.0, k * (r - l0) + c * (v - paid)) if r > l0 else 0.0)
+
+
 def _mass_flow(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
     """What enters per second, times its velocity less that of the point where it was not given against the body."""
     body, place = _split(now, f["point"]), now.point(f["point"])
@@ -668,6 +690,7 @@ FORCES: dict[str, Callable] = {
     "gravity": _gravity, "force": _force, "couple": _couple, "distributed": _distributed, "spring": _spring,
     "damper": _damper, "between": _between, "torsion_spring": _torsion_spring, "torsion_damper": _torsion_damper,
     "potential": _potential, "generalized": _generalized, "kinetic": lambda *_: [], "mass_flow": _mass_flow,
+    "bumper": _bumper, "rope": _rope,
 }  # fmt: skip
 
 

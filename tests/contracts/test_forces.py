@@ -95,6 +95,26 @@ EXAMPLES = {
         PLANE: [f'{TWO}, pull = "k*l^2/r^2"', f'{GROUND}, pull = "k*(r - l)"', f'{TWO}, pull = "c*r\'*r"'],
         SPACE: [f'{TWO}, pull = "k*l^2/r^2"', f'{TWO}, pull = "k*r + c*r\'"'],
     },
+    "bumper": {
+        PLANE: [
+            f'{TWO}, stiffness = "k", length = "4*l"',
+            f'{GROUND}, stiffness = "k", length = "7*l", damping = "c"',
+            f'{TWO}, stiffness = "k", length = "4*l", exponent = "3/2", dissipation = "c"',
+            f'{SLIDING}, stiffness = "k", length = "9*l", exponent = 2',
+            f'{GROUND}, stiffness = "k", length = "9*l", along = [3, 4], damping = "c"',
+        ],
+        SPACE: [
+            f'{TWO}, stiffness = "k", length = "9*l"',
+            f'{TWO}, stiffness = "k", length = "9*l", dissipation = "c"',
+        ],
+    },
+    "rope": {
+        PLANE: [
+            'path = ["upper.R", "lower.P"], stiffness = "k", length = "l/9"',
+            'path = ["G", "upper.R", "lower.P"], stiffness = "k", length = "l*t/9", damping = "c/9"',
+        ],
+        SPACE: ['path = ["G", "upper.R", "lower.P"], stiffness = "k", length = "l/9", damping = "c/9"'],
+    },
     "mass_flow": {
         PLANE: [
             'point = "lower.P", velocity = ["k", "c*b\'"], axes = "lower", rate = "tau"',
@@ -325,7 +345,7 @@ def ground_point(system: System) -> Vector:
     return (x, y, z)
 
 
-BETWEEN_POINTS, BETWEEN_BODIES = ("spring", "damper", "between"), ("torsion_spring", "torsion_damper")
+BETWEEN_POINTS, BETWEEN_BODIES = ("spring", "damper", "between", "bumper"), ("torsion_spring", "torsion_damper")
 INNER = [case for case in CASES if case[0] in BETWEEN_POINTS or (case[0] in BETWEEN_BODIES and "bodies" in case[2])]
 
 

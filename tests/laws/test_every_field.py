@@ -205,6 +205,10 @@ acceleration = [0, -9.81]
         water="kind = 'kinetic'\nenergy = \"m*l^2*(a'^2 + cos(b)*a'*b'/2)\"",
         push="kind = 'generalized'\ncoordinate = 'a'\nvalue = \"u - c*a'\"",
         jet="kind = 'mass_flow'\npoint = 'two.Q'\nvelocity = ['u', \"-a'\"]\naxes = 'one'\nrate = 'c*u'",
+        buffer="kind = 'bumper'\npoints = ['two.Q', 'one.start']\nstiffness = 'k'\nlength = 2\ndamping = 'c'",
+        hertz="kind = 'bumper'\npoints = ['two.Q', 'one.start']\nstiffness = 'k'\nlength = 9\nexponent = 1.5\n"
+        "dissipation = 'c'\nalong = [1, 2]",
+        rope="kind = 'rope'\npath = ['two.Q', 'one.start']\nstiffness = 'k'\nlength = 0.1\ndamping = 'c'",
         rain="kind = 'mass_flow'\npoint = 'two.end'\nabsolute = ['u', \"-a'\"]",
     ),
     "pin": constraint("kind = 'pin'\npoints = ['plate.P']", free()),

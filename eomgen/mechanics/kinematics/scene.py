@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import field
+from itertools import pairwise
 from typing import Any
 
 from eomgen.errors import DerivationError, ModelError
@@ -15,6 +16,9 @@ from eomgen.model import (
     ConstraintRow,
     JointFriction,
     Resistance,
+    Stop,
+    Strand,
+    common_tangent,
 )
 from eomgen.symbolic.exact import equal_at_random_states, readable_all
 from eomgen.symbolic.expression import (
@@ -217,6 +221,15 @@ class SystemScene:
             if not is_zero(body.m):
                 rows.append(((name, body.com), body.m))
         return tuple(rows)
+
+    def rate(self, scalar: Scalar) -> Scalar:
+        """d/dt of a function of the places and t."""
+        return self.motion.scope.time_derivative((scalar,))[0]
+
+    def strands(self, path: tuple[Any, ...]) -> tuple[Strand, ...]:
+        """The straight pieces from stop to stop of a path over points and wraps."""
+        stops = [Stop.of(self, item) for item in path]
+        return tuple(common_tangent(self, *pair) for pair in pairwise(stops))
 
     def unsaid_rate(self, body: str) -> Scalar:
         """Rate of a body's mass less what the flows with a rate of their own bring [kg/s]."""

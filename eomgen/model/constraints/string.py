@@ -10,41 +10,15 @@ from eomgen.model.constraints.base import Constraint, Thread
 from eomgen.model.constraints.row import ConstraintRow, Edge, direction_of
 from eomgen.model.constraints.strand import Stop, Strand, rope_row, side_rows, strand_along
 from eomgen.model.diagnostics import Diagnostic
-from eomgen.model.fields import EitherRule, ListRule, NameRule, TextRule, VectorRule
+from eomgen.model.fields import EitherRule, ListRule, TextRule, VectorRule
 from eomgen.model.forces.load import LoadContext
-from eomgen.model.joints.base import Z, unit
-from eomgen.model.kinds import BodyName, Flag, GroundPlace, Radius, Restitution, SpaceDirection, Turn
-from eomgen.model.part import Part, PartRule
+from eomgen.model.kinds import Flag, Restitution, Route
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression import Expression, Vector
 from eomgen.symbolic.numeric import tolerances
 
-
-@dataclass(frozen=True, kw_only=True)
-class Wrap(Part):
-    """A round thing that the string lies on.
-
-    Args:
-        body: a pulley, about its origin.
-        radius: None: the shape's [m].
-        turn: the sense in which one travels round it.
-        axis: in space, about which it is round and the sense is seen, in the axes of the body or the ground; None: z.
-        slip: the string slides on it: one tension through.
-        at: instead of a body: a place of the ground about which there is a peg [m].
-    """
-
-    title: ClassVar[str] = "a wrap of the string"
-    body: BodyName | None = None
-    at: GroundPlace | None = None
-    radius: Radius | None = None
-    turn: Turn | None = None
-    axis: SpaceDirection | None = None
-    slip: Flag = False
-
-
 DIRECTIONS = {"up": (0, 1, 0), "down": (0, -1, 0), "left": (-1, 0, 0), "right": (1, 0, 0)}
 StrandRule = EitherRule(TextRule(tuple(DIRECTIONS)), VectorRule(nonzero=True))
-Route = Annotated[tuple[str | Wrap, ...], ListRule(EitherRule(NameRule("point"), PartRule(Wrap)), least=2)]
 Strands = Annotated[tuple[str | tuple[Expression, ...], ...], ListRule(StrandRule)]
 
 
@@ -84,7 +58,7 @@ class String(Constraint):
 
     def strands_at(self, scene: LoadContext) -> tuple[Strand, ...]:
         """The strands from stop to stop, along given directions or common tangents."""
-        pairs = pairwise([_stop(scene, item) for item in self.path])
+        pairs = pairwise([Stop.of(scene, item) for item in self.path])
         if self.strands is None:
             return tuple(Strand.between(scene, *pair) for pair in pairs)
         ways = [_direction(scene, way) for way in self.strands]
@@ -155,17 +129,6 @@ class String(Constraint):
         ropes = [[s for s, k in zip(strands, numbers, strict=True) if k == row] for row in range(1, numbers[-1] + 1)]
         sides = [] if self.strands is None else [side for strand in strands for side in side_rows(scene, strand)]
         return (*(rope_row(scene, rope) for rope in ropes), *sides)
-
-
-def _stop(scene: LoadContext, item: str | Wrap) -> Stop:
-    """A point, or a wrap about a body's origin or a place on the ground."""
-    if isinstance(item, str):
-        return Stop(scene, scene.place(item))
-    place = (None, scene.ground_place(item.at)) if item.body is None else scene.own_place(item.body, None)
-    radius = scene.radius(str(item.body)) if item.radius is None else scene.value(item.radius)
-    axis = Z if item.axis is None else unit(scene.vector(item.axis))
-    n = axis if item.body is None or scene.plane else scene.orientation(item.body) @ axis
-    return Stop(scene, place, radius if item.turn == "cw" else -radius, n)
 
 
 def _direction(scene: LoadContext, way: str | tuple[Expression, ...]) -> Vector:

@@ -5,9 +5,11 @@ Adding one is one class, next to its kin or in a file of its own, and one name h
 
 from eomgen.model.forces.applied import CoupleForce, Generalized, PointForce
 from eomgen.model.forces.base import Force
+from eomgen.model.forces.bumper import Bumper
 from eomgen.model.forces.elements import Between, Damper, Spring
 from eomgen.model.forces.energies import Kinetic, Potential
 from eomgen.model.forces.mass_flow import MassFlow
+from eomgen.model.forces.rope import Rope
 from eomgen.model.forces.torsion import TorsionDamper, TorsionSpring
 from eomgen.model.forces.weights import Distributed, Gravity
 
@@ -21,6 +23,8 @@ ALL = (
     TorsionSpring,
     TorsionDamper,
     Between,
+    Bumper,
+    Rope,
     MassFlow,
     Potential,
     Kinetic,
@@ -30,6 +34,7 @@ ALL = (
 __all__ = [
     "ALL",
     "Between",
+    "Bumper",
     "CoupleForce",
     "Damper",
     "Distributed",
@@ -40,6 +45,7 @@ __all__ = [
     "MassFlow",
     "PointForce",
     "Potential",
+    "Rope",
     "Spring",
     "TorsionDamper",
     "TorsionSpring",

@@ -4,7 +4,7 @@ A force is declared by fields that say where it acts and by which law.
 """
 
 from collections.abc import Iterator
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from eomgen.frozen import dataclass
 from eomgen.model.catalog import Catalog
@@ -30,6 +30,9 @@ class Element:
         along: a fixed direction along which its length is measured; None: from end to end.
         stiffness, damping: of length and its rate, of angle and its rate; None: 0.
         slack: the length, or angle, at which a spring is slack, or "start"; None: 0.
+        pushes: beyond the slack, where it is shorter, it pushes and never pulls, elsewhere it does nothing.
+        power: n of the law k x^n that it then has (None: 1).
+        dissipation: a share of it per speed of compression: k x^n (1 + a x') (None: 0).
         pull: a law of the length `r` and its rate `r'`; None: 0.
     """
 
@@ -40,6 +43,9 @@ class Element:
     damping: Expression | None = None
     slack: Expression | str | None = None
     pull: Expression | None = None
+    pushes: bool = False
+    power: Expression | None = None
+    dissipation: Expression | None = None
 
 
 @dataclass(frozen=True)
@@ -108,7 +114,32 @@ class FlowOfMass:
     absolute: bool = False
 
 
-Act = FlowOfMass | Element | PushAt | CoupleOn | PushAlongLine | PushOfMass | PushOnCoordinate | GivenEnergy
+@dataclass(frozen=True)
+class ElasticThread:
+    """One tension along the way of a rope, k s + c s' of its stretch s where that is above 0, and never below 0.
+
+    Args:
+        stops: points by name, and wraps as a rope has them.
+        slack: its length without tension [m], or "start".
+    """
+
+    stops: tuple[Any, ...]
+    stiffness: Expression
+    slack: Expression | str
+    damping: Expression | None = None
+
+
+Act = (
+    FlowOfMass
+    | ElasticThread
+    | Element
+    | PushAt
+    | CoupleOn
+    | PushAlongLine
+    | PushOfMass
+    | PushOnCoordinate
+    | GivenEnergy
+)
 
 
 # -------- base ------------------------------------------------------------------------------------------------
@@ -127,6 +158,7 @@ class Force(Part):
     by_mass: ClassVar[bool] = False
     one_of: ClassVar[tuple[str, ...]] = ()  # of these fields exactly one is given
     elastic: ClassVar[bool] = False  # a spring
+    tight: ClassVar[bool] = False  # one tension along its way
     placeless: ClassVar[bool] = False  # an energy of coordinates, without a point of application
 
     def diagnostics(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
@@ -157,6 +189,10 @@ class Force(Part):
     def kinetic(self) -> Expression | None:
         """T [J] of what moves and is no body; None of a force that has none."""
         return None
+
+    def strands_at(self, scene: LoadContext) -> tuple[Any, ...]:
+        """The straight pieces of what pulls along its way; () of others."""
+        return ()
 
     def effort(self, scene: LoadContext) -> Scalar | None:
         """Attraction of its two points [N], or couple on its (second) body [N m]; None of others."""
