@@ -252,7 +252,7 @@ DOORS = {  # rooms that are imported through what their stub names, and how many
     "results": 16,
     "study": 20,
     "proof": 64,
-    "model": 130,
+    "model": 131,
     "mechanics.kinematics": 22,
     "mechanics.constraints": 19,
     "mechanics.dynamics": 24,
@@ -374,10 +374,10 @@ def house():
 
 def test_a_newcomer_has_no_more_to_know_than_was_reached(house):
     """Modules outside the seams, lines of the longest, modules of one importer, names of lower rooms used elsewhere."""
-    assert len(house.chapters) <= 364
+    assert len(house.chapters) <= 365
     assert max(m.lines for m in house.modules.values()) <= 700
     assert len(house.private) <= 57
-    assert len(house.taken_from(("symbolic", "model", "mechanics", "codegen", "simulation"))) <= 568
+    assert len(house.taken_from(("symbolic", "model", "mechanics", "codegen", "simulation"))) <= 569
     assert {room: k for room in FOREIGN if (k := len(house.taken_by(room))) > FOREIGN[room]} == {}
 
 

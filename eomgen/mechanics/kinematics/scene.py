@@ -18,7 +18,6 @@ from eomgen.model import (
     Resistance,
     Stop,
     Strand,
-    common_tangent,
 )
 from eomgen.symbolic.exact import equal_at_random_states, readable_all
 from eomgen.symbolic.expression import (
@@ -228,8 +227,7 @@ class SystemScene:
 
     def strands(self, path: tuple[Any, ...]) -> tuple[Strand, ...]:
         """The straight pieces from stop to stop of a path over points and wraps."""
-        stops = [Stop.of(self, item) for item in path]
-        return tuple(common_tangent(self, *pair) for pair in pairwise(stops))
+        return tuple(Strand.between(self, *pair) for pair in pairwise([Stop.of(self, item) for item in path]))
 
     def unsaid_rate(self, body: str) -> Scalar:
         """Rate of a body's mass less what the flows with a rate of their own bring [kg/s]."""
