@@ -11,7 +11,7 @@ import pytest
 from click.testing import CliRunner
 from each import each
 from linear_lines import linear_lines
-from slow_run import in_slow_run, sampled, usual
+from slow_run import beside, in_slow_run, sampled, usual
 
 import eomgen
 from eomgen.cli import main
@@ -478,13 +478,19 @@ def test_what_is_right_to_first_order_alone_is_proven_so(text, equation, right):
 
 
 LINEAR = ("double_pendulum", "elastic_pendulum", "n_four_bar", "rolling_disc_and_bar", "conker")  # loops among them
+NAMES = [str(path.relative_to(MODELS).with_suffix("")) for path in sorted(MODELS.glob("**/*.toml"))]
 
 
-@pytest.mark.parametrize("name", LINEAR)
+@pytest.mark.parametrize("name", (*LINEAR, *beside(*(name for name in NAMES if name not in LINEAR))))
 def test_what_linearize_gives_is_right_to_first_order(name):
     """Each row of M q'' + C q' + K q = 0 about the equilibrium, proven; along the constraints of loops, too."""
     path = MODELS / f"{name}.toml"
-    for right, _, about in linear_lines(eomgen.linearize(path).as_dict()):
+    try:
+        found = eomgen.linearize(path).as_dict()
+    except eomgen.EomgenError:
+        assert name not in LINEAR
+        return
+    for right, _, about in linear_lines(found):
         result = CliRunner().invoke(main, ["verify", str(path), right, "--to-first-order", "--about", about])
         assert result.exit_code == 0 and "certificate: holds" in result.output, result.output
 
