@@ -16,9 +16,11 @@ from eomgen.judge.model_edits import ModelEdit, edited_models
 from eomgen.judge.reading import DERIVED, MULTIPLIER, HandEquation, Reading, side_value
 from eomgen.judge.terms import Edits
 from eomgen.mechanics.dynamics import Contributions, Extent, System
+from eomgen.mechanics.impacts import ImpactEquations
 from eomgen.mechanics.instant import Quantities
 from eomgen.model import AtRest, Model, Output, Table, WrittenEquation
 from eomgen.questions import Answer, solve
+from eomgen.results import impact
 from eomgen.study import MotionFromStart, Study, study_of
 from eomgen.symbolic.expression import (
     SLOPE,
@@ -230,6 +232,17 @@ class Case:
         found = Mistakes(self.parts, what, of, start or {})
         kept: Mistakes = self._found.setdefault((what, of), found)
         return kept
+
+    def impact(self, contacts: tuple[str, ...]) -> ImpactEquations:
+        """The impact where contacts close, derived once.
+
+        Raises:
+            DerivationError: it has no equations.
+        """
+        if (ImpactEquations, contacts) not in self._found:
+            self._found[ImpactEquations, contacts] = impact(self.model, contacts).equations
+        found: ImpactEquations = self._found[ImpactEquations, contacts]
+        return found
 
     @property
     def rows(self) -> ScalarRow:

@@ -10,7 +10,7 @@ from itertools import permutations
 
 import numpy as np
 
-from eomgen.errors import DerivationError, ExpressionError, ModelError
+from eomgen.errors import DerivationError, ExpressionError, ModelError, UsageError
 from eomgen.frozen import dataclass
 from eomgen.judge.case import Case
 from eomgen.judge.decision import combination, is_zero_everywhere, linear_row
@@ -43,6 +43,7 @@ from eomgen.symbolic.expression import (
     operations,
     order,
     over,
+    parse,
     substituted,
     symbols_of,
 )
@@ -369,6 +370,27 @@ def linearized(rows: ScalarRow, place: Mapping[Node, Scalar]) -> ScalarRow:
         still, *slopes = substituted((row, *gradient(row, moving)), place)
         found.append(sum((s * (x - place[x]) for s, x in zip(slopes, moving, strict=True)), start=still))
     return tuple(found)
+
+
+def place_of(case: Case, about: str | None) -> Mapping[Node, Scalar] | None:
+    """The place that equations name, "theta = 0, x = l"; None: none is named.
+
+    Raises:
+        UsageError: it names no coordinate.
+    """
+    if about is None:
+        return None
+    named, found = {q.name: q for q in case.system.symbols.q}, dict[Node, Scalar]()
+    for each in about.split(","):
+        name, sign, value = (part.strip() for part in each.partition("="))
+        if name not in named or not sign:
+            known = ", ".join(f"{q} = 0" for q in named)
+            raise UsageError(f"about '{each.strip()}': no coordinate is named", fix=f"write {known}")
+        try:
+            found[named[name]] = case.value(parse(value))
+        except ExpressionError as error:
+            raise UsageError(f"about '{each.strip()}': {error.what}", fix=error.fix) from error
+    return found
 
 
 def first_order_place(

@@ -15,8 +15,9 @@ from typing import Any
 from eomgen.errors import EomgenError, ExpressionError, UsageError
 from eomgen.frozen import dataclass
 from eomgen.judge.case import Case
+from eomgen.judge.comparison import place_of
 from eomgen.judge.decision import is_zero_everywhere
-from eomgen.judge.judge import Judge, place_of
+from eomgen.judge.judge import Judge
 from eomgen.judge.reading import HandEquation
 from eomgen.judge.verdict import EXIT_CODES, RIGHT, UNDECIDED, UNREADABLE, WRONG, Verdict, kind_of_equation
 from eomgen.judge.written_pages import PageEquation, equations_of, matrix_of

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from eomgen.errors import DerivationError, EomgenError, ExpressionError, MissingValues, RunFailed, UsageError
@@ -13,7 +14,7 @@ from eomgen.frozen import dataclass
 from eomgen.judge.answers import of_output, of_state, of_unknown, of_wrong_course, requested
 from eomgen.judge.balances import requests_reactions
 from eomgen.judge.case import Case
-from eomgen.judge.comparison import Comparison, excess, first_order_place, remainder
+from eomgen.judge.comparison import Comparison, excess, first_order_place, place_of, remainder
 from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.fixes import Authored, Fixes, of_forces
 from eomgen.judge.implied import (
@@ -26,7 +27,15 @@ from eomgen.judge.implied import (
     simplest_explanation,
     targets_of,
 )
-from eomgen.judge.printed_answers import of_eigenvalue, of_matrix, of_sections, of_small_motions, section_at
+from eomgen.judge.printed_answers import (
+    impact_judged,
+    of_eigenvalue,
+    of_impact,
+    of_matrix,
+    of_sections,
+    of_small_motions,
+    section_at,
+)
 from eomgen.judge.reading import DERIVED, HandEquation, along_ground_axes, of_free_coordinates
 from eomgen.judge.renaming import (
     UNDAMPED,
@@ -62,6 +71,7 @@ from eomgen.judge.truth import (
 from eomgen.judge.verdict import (
     FIRST_ORDER,
     FUNCTION_KINDS,
+    IMPACT,
     KINDS,
     RIGHT,
     UNDECIDED,
@@ -113,27 +123,6 @@ def verify(
     """
     case = Case(model_to_study(model), bool(from_rest))
     return Judge(case, to_first_order, place_of(case, about)).verdict(equation, at=at, kind=kind)
-
-
-def place_of(case: Case, about: str | None) -> Mapping[Node, Scalar] | None:
-    """The place that equations name, "theta = 0, x = l"; None: none is named.
-
-    Raises:
-        UsageError: it names no coordinate.
-    """
-    if about is None:
-        return None
-    named, found = {q.name: q for q in case.system.symbols.q}, dict[Node, Scalar]()
-    for each in about.split(","):
-        name, sign, value = (part.strip() for part in each.partition("="))
-        if name not in named or not sign:
-            known = ", ".join(f"{q} = 0" for q in named)
-            raise UsageError(f"about '{each.strip()}': no coordinate is named", fix=f"write {known}")
-        try:
-            found[named[name]] = case.value(parse(value))
-        except ExpressionError as error:
-            raise UsageError(f"about '{each.strip()}': {error.what}", fix=error.fix) from error
-    return found
 
 
 CONSTANT_LETTER = re.compile(r"(?:[CcEHhK]|const)_?[0-9]?")
@@ -190,6 +179,9 @@ class Judge:
             return self._of_several(equation, several, at=at, kind=kind, defined=defined)
         if (matrix := matrix_of(equation) if isinstance(equation, str) else None) is not None:
             return self._of_matrix(equation, *matrix)
+        there = partial(self.verdict, at=at, kind=kind, defined=defined) if at is not None else None
+        if isinstance(equation, str) and (struck := of_impact(self.case, there, equation, defined)) is not None:
+            return struck
         printed = self.of_printed(equation, kind, defined) if at is None and isinstance(equation, str) else None
         if printed is not None:
             return printed
@@ -363,7 +355,8 @@ class Judge:
         """The equations of a verdict as they are decided again by numbers; none that says nothing or is undecided."""
         if verdict.parts:
             return tuple(each for part in verdict.parts for each in self.said(part, defined))
-        found = self._said(verdict, defined)
+        struck = verdict.kind == IMPACT
+        found = impact_judged(self.case, verdict, defined) if struck else self._said(verdict, defined)
         return () if found is None else (found,)
 
     def _said(self, verdict: Verdict, defined: Mapping[str, Expression] | None) -> JudgedEquation | None:

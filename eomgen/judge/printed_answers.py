@@ -9,10 +9,12 @@ statically indeterminate.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
+from itertools import islice
+from math import isfinite
 from typing import Any
 
 from eomgen.documents import lettered
@@ -20,11 +22,15 @@ from eomgen.errors import DerivationError, EomgenError, ExpressionError, Missing
 from eomgen.frozen import dataclass
 from eomgen.judge.case import Case
 from eomgen.judge.comparison import excess
-from eomgen.judge.decision import is_zero_everywhere
-from eomgen.judge.reading import DERIVED, HandEquation
-from eomgen.judge.verdict import RIGHT, UNDECIDED, WRONG, Cause, Verdict
+from eomgen.judge.decision import is_zero_everywhere, states_of
+from eomgen.judge.reading import DERIVED, HandEquation, side_value
+from eomgen.judge.terms import short_text
+from eomgen.judge.verdict import IMPACT, RIGHT, UNDECIDED, WRONG, Cause, Verdict
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.impacts import ImpactEquations
 from eomgen.mechanics.linearization import Modes
 from eomgen.mechanics.statics import SectionForces
+from eomgen.proof import JudgedEquation
 from eomgen.results import linearize
 from eomgen.symbolic.exact import Polynomial
 from eomgen.symbolic.expression import (
@@ -35,10 +41,12 @@ from eomgen.symbolic.expression import (
     Reference,
     Scalar,
     depends_on,
+    gradient,
     is_zero,
     over,
     parse,
     substituted,
+    symbols_of,
 )
 from eomgen.symbolic.numeric import FLOAT, NoValue, evaluate, tolerances
 from eomgen.symbolic.print import readable_text, to_text
@@ -421,3 +429,242 @@ def _component_of(case: Case, call: Call) -> str:
         return reactions.components[letters.index(asked)].name if asked in letters else ""
     of_body = len(call.args) == 2 and call.args[0] == call.args[1]  # along its own axes, as derivations have it
     return str(replace(call, args=call.args[:1])) if of_body else str(call)
+
+
+# -------- impacts ---------------------------------------------------------------------------------------------
+# Lambda_floor, y_after', T_before - T_after, impulse_x(rod): what `derive --impact` prints, with the solution put in.
+
+
+LATER = re.compile(r"(?P<speed>\\dot\s*(?:\{\s*\\?\w+\s*\}|\\?\w+)|\b[A-Za-z]\w*')\s*\^\s*\{?\s*(?P<when>[-+])\s*\}?")
+_WORD = r"(?:\\\w+\s*\{)?\s*"  # \mathrm{
+ENERGY_WHEN = re.compile(rf"(?<![A-Za-z_])T\s*(?:\^|_)\s*\{{?\s*(?:(?P<later>\+|{_WORD}after)|-|{_WORD}before)\s*\}}*")
+OF_IMPACT = re.compile(
+    rf"_\s*\{{?\s*{_WORD}(?:after|before)\b|_after'|Lambda_|T_(?:before|after)\b|\bimpulse(?:_[xyz])?\s*\("
+)
+SAYS_NOTHING = "it holds whatever impulses and speeds are"
+ENERGIES = ("T_before", "T_after")
+MOST_CONTACTS = 4  # of a model of which also several that close at once are meant
+LARGEST_FACTOR = 24
+
+
+@dataclass(frozen=True)
+class OfImpact:
+    """An equation of an impact, over the symbols of that impact.
+
+    Args:
+        given: as it was written.
+        written: with the names of the derivation.
+        equations: of the impact.
+        difference: left minus right, over impulses, speeds before and after.
+    """
+
+    given: str
+    written: HandEquation
+    equations: ImpactEquations
+    difference: Scalar
+
+    @staticmethod
+    def of(case: Case, given: str, defined: Mapping[str, Expression] | None = None) -> Iterator[OfImpact]:
+        """The equation in each impact that has its names, the simplest first; none where it is of no impact."""
+        ending = [contact.name for contact in case.model.contacts if contact.unilateral]
+        text = _named_when(given)
+        if not ending or not OF_IMPACT.search(text):
+            return
+        written = case.reading.read(text, defined)
+        if not _further(case, written) and not any(call.name.startswith("impulse") for call in written.calls):
+            return  # the model's own names win
+        own = [name for name in ending if any(_is_of(x, name) for x in written.names)]
+        own += [
+            x.name for call in written.calls if call.name == "impulse" for x in call.args if isinstance(x, Reference)
+        ]
+        named = [name for name in ending if name in own]
+        further = [name for name in ending if name not in named]
+        several = [[*named, name] for name in further] if len(ending) <= MOST_CONTACTS else []
+        tried = [*([named] if named else []), *several, *([ending] if len(ending) <= MOST_CONTACTS else [])]
+        for contacts in tried:
+            with suppress(ExpressionError):
+                yield OfImpact.over(case, given, written, tuple(x for x in ending if x in contacts))
+
+    @staticmethod
+    def over(case: Case, given: str, written: HandEquation, contacts: tuple[str, ...]) -> OfImpact:
+        """The equation in the impact of these contacts.
+
+        Raises:
+            ExpressionError: a name in it is none of that impact.
+            DerivationError: the impact has no equations.
+        """
+        found = case.impact(contacts)
+        scope = found.system.scope
+        T = found.kinetic_energy
+        later = substituted((T,), dict(zip(found.u, found.after, strict=True)))[0]
+        own = {x.name: x for x in (*found.after, *(row.impulse for row in found.rows))}
+        names = {**scope.names, **own, **dict(zip(ENERGIES, (T, later), strict=True))}
+
+        def called(call: Call) -> Scalar:
+            owner, axis = call.args[0] if call.args else None, "xyz".find(call.name[-1])
+            if call.name == "impulse" and isinstance(owner, Reference):
+                row = next((row for row in found.rows if row.name == owner.name), None)
+                if row is not None:
+                    return row.impulse
+            vector = found.of_joints.get(owner.name) if isinstance(owner, Reference) else None
+            if call.name.startswith("impulse_") and vector is not None:
+                known: Scalar = vector[axis]
+                return known
+            raise ExpressionError(f"'{call}' is no part of an impact", max(call.column, 0))
+
+        left, right = (side_value(side, names, called, lambda x: x) for side in (written.left, written.right))
+        return OfImpact(given, written, found, left - right)
+
+    @property
+    def system(self) -> System:
+        return self.equations.system
+
+    def solved(self, difference: Scalar, changed: Mapping[Node, Scalar] | None = None) -> Scalar:
+        """The difference with impulses and speeds after it as the impact gives them, with changed parameters."""
+        solution = self.equations.solution
+        values = substituted(tuple(solution.values()), changed) if changed else tuple(solution.values())
+        return substituted((difference,), dict(zip(solution, values, strict=True)))[0]
+
+    @cached_property
+    def holds(self) -> bool | None:
+        return is_zero_everywhere(self.system, self.solved(self.difference)).holds
+
+    @property
+    def verdict(self) -> Verdict:
+        given, several = self.given, sum(x.unilateral for x in self.system.scope.model.contacts) > 1
+        if self.holds and self._is_identity:
+            return Verdict(given, IMPACT, WRONG, causes=(Cause("other", SAYS_NOTHING, quantity="what is equated"),))
+        if self.holds is not False:
+            up_to = f"the impact of {', '.join(self.equations.contacts)}" if several else ""
+            return Verdict(given, IMPACT, RIGHT if self.holds else UNDECIDED, up_to)
+        left = short_text(self.solved(self.difference), self.system.scope.positive)
+        return Verdict(given, IMPACT, WRONG, difference=left, causes=(self.cause,))
+
+    @property
+    def _is_identity(self) -> bool:
+        """True if it holds whatever impulses and speeds are, and has some of them."""
+        has = {x.name for x in self.equations.solution} | {*ENERGIES}
+        return bool(has & self.written.names) and is_zero_everywhere(self.system, self.difference).holds is True
+
+    @property
+    def cause(self) -> Cause:
+        """Why it is wrong: one sign, one factor, the restitution left out; else what is right."""
+        e = [x for row in self.equations.rows if row.e is not None for x in symbols_of((row.e,))]
+        for symbol in dict.fromkeys(e):
+            (turned,) = substituted((self.difference,), {symbol: -symbol})
+            if self._vanishes(turned):
+                text = f"{symbol.name} has the other sign"
+                return Cause("sign", text, term=symbol.name, quantity=f"the restitution {symbol.name}")
+        if e and self._vanishes(self.difference, {symbol: 0 for symbol in e}):
+            text = "this is the impact without rebound: the restitution is missing"
+            return Cause("missing_term", text, term=e[0].name, quantity="the restitution")
+        for x in self.equations.solution:
+            if (found := self._of_factor(x)) is not None:
+                return found
+        left = self.written.left.code
+        (kind, name), alone = left[0], len(left) == 1
+        for x, known in self.equations.solution.items():
+            if alone and kind == "name" and x.name == name:
+                return Cause("other", f"it is {name} = {readable_text(known)}", quantity=str(name))
+        return Cause("other", "impulses and speeds of the impact do not satisfy it", quantity="the balance")
+
+    def _vanishes(self, difference: Scalar, changed: Mapping[Node, Scalar] | None = None) -> bool:
+        return bool(is_zero_everywhere(self.system, self.solved(difference, changed)).holds)
+
+    def _of_factor(self, x: Node) -> Cause | None:
+        """The cause that an unknown stands with a wrong factor in it; None: no one number makes it right."""
+        (slope,) = gradient(self.difference, (x,))
+        if is_zero(slope) or depends_on(slope, (x,)):
+            return None
+        (rest,) = substituted((self.difference,), {x: 0})
+        found: list[float] = []
+        for state in islice(
+            states_of(self.system, (self.difference,), on_constraints=bool(self.system.constraints.J)), 3
+        ):
+            values = {node: float(value) for node, value in state.items()}
+            try:
+                a, b = evaluate((self.solved(rest), self.solved(slope * x)), values, FLOAT)
+                found.append(float(-a / b))
+            except (NoValue, ZeroDivisionError, KeyError):
+                return None
+        factor = Fraction(found[0]).limit_denominator(LARGEST_FACTOR) if found and isfinite(found[0]) else Fraction(0)
+        if factor in (0, 1) or not self._vanishes(rest + slope * factor * x):
+            return None
+        alone = self.written.left.code == (("name", x.name),)
+        if factor == -1:
+            text = "the right side has the other sign" if alone else f"{x.name} has the other sign"
+            return Cause("sign", text, term=x.name, quantity=x.name)
+        text = f"the right side has the factor {factor} too much" if alone else f"{x.name} lacks the factor {factor}"
+        return Cause("factor", text, term=x.name, quantity=x.name)
+
+
+def of_impact(
+    case: Case, judged: Callable[[str], Verdict] | None, given: str, defined: Mapping[str, Expression] | None = None
+) -> Verdict | None:
+    """The verdict on an equation of an impact, as `derive --impact` prints it; None: it is no such.
+
+    Args:
+        judged: of what speaks of an instant the judge of it, with the formula in the place of its impulse or speed.
+    Raises:
+        ExpressionError: it cannot be read.
+    """
+    try:
+        found = list(OfImpact.of(case, given, defined))
+        if judged is not None:
+            formula = next((x for x in map(_in_state, found) if x), "")
+            return replace(judged(formula), given=given) if formula else None
+        verdicts = [each.verdict for each in found]
+    except DerivationError as error:
+        return Verdict(given, IMPACT, UNDECIDED, reason=error.what)
+    return next(filter(None, verdicts), verdicts[0]) if verdicts else _of_other_names(case, given, defined)
+
+
+def _of_other_names(case: Case, given: str, defined: Mapping[str, Expression] | None) -> Verdict | None:
+    """The verdict on an equation with names as those of impacts which no impact has; None: it has none."""
+    text = _named_when(given)
+    if not any(contact.unilateral for contact in case.model.contacts) or not OF_IMPACT.search(text):
+        return None
+    unknown = [x for x in _further(case, case.reading.read(text, defined)) if OF_IMPACT.search(f"{x}'")]
+    reason = "; ".join(f"unknown name '{x}': no impact has it" for x in unknown)
+    return Verdict(given, IMPACT, UNDECIDED, reason=reason, unknown=tuple(unknown)) if unknown else None
+
+
+def _in_state(found: OfImpact) -> str:
+    """An equation for one impulse or speed after an impact, with its formula in its place; "": it is no such."""
+    solution, written = found.equations.solution, found.written
+    x = next((x for x in solution if written.left.code == (("name", x.name),)), None)
+    if x is None or written.right.names & {y.name for y in solution}:
+        return ""
+    return f"{to_text(solution[x])} = {written.given.partition('=')[2]}"
+
+
+def impact_judged(case: Case, verdict: Verdict, defined: Mapping[str, Expression] | None) -> JudgedEquation | None:
+    """The equation of an impact as its verdict is decided again by numbers; None: nothing was decided."""
+    equations = case.parts.equations
+    if verdict.verdict == UNDECIDED or equations is None or any(x.text == SAYS_NOTHING for x in verdict.causes):
+        return None
+    found = list(OfImpact.of(case, verdict.given, defined))
+    x = next((x for x in found if x.holds is (verdict.verdict == RIGHT)), found[0])
+    sides = (verdict.given, x.written.left, x.written.right)
+    struck = (x.equations, x.difference)
+    return JudgedEquation(*sides, IMPACT, verdict.verdict == RIGHT, verdict.up_to, equations, impact=struck)
+
+
+def _further(case: Case, written: HandEquation) -> list[str]:
+    """Names that the model does not have."""
+    return [name for name in written.names if name not in case.system.scope.names and name not in ("t", "pi")]
+
+
+def _named_when(given: str) -> str:
+    """y'^+ as y_after', y'^- as y', T^+ as T_after."""
+
+    def speed(found: re.Match[str]) -> str:
+        bare = re.sub(r"\\dot|[{}\s']", "", found["speed"]).lstrip("\\")
+        return f"{bare}_after'" if found["when"] == "+" else f"{bare}'"
+
+    text = ENERGY_WHEN.sub(lambda found: ENERGIES[found["later"] is not None], given)
+    return LATER.sub(speed, text)
+
+
+def _is_of(symbol: str, contact: str) -> bool:
+    return symbol == f"Lambda_{contact}" or symbol.startswith(f"Lambda_{contact}_")

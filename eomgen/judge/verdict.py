@@ -113,7 +113,8 @@ class Verdict:
 
     Args:
         given: as it was written.
-        kind: motion, energy, force, reaction, velocity, acceleration, inertia, frequency, equilibrium, statics or law.
+        kind: motion, energy, force, reaction, velocity, acceleration, inertia, frequency, equilibrium, statics, law,
+            impact.
         verdict: "right", "wrong" or "undecided".
         up_to: what had to be used to see that it is right, in words; of what is wrong in some pieces of the model
             alone, in which it is right: "while y >= 0"; "" where nothing.
@@ -228,7 +229,9 @@ KINDS = (
     "equilibrium",
     "statics",
     "law",
+    "impact",
 )
+IMPACT = KINDS[-1]
 _OF = {
     **dict.fromkeys(("kinetic_energy", "potential_energy", "power"), "energy"),
     "generalized_force": "force",

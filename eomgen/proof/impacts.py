@@ -202,6 +202,52 @@ def _jumps_otherwise(found: ImpactEquations, state: State) -> str:
     raise NoValue("nothing is approached, or an impulse would pull")
 
 
+# -------- verdicts --------------------------------------------------------------------------------------------
+
+
+def sides_differ(found: ImpactEquations, difference: Scalar) -> bool:
+    """True if an equation of an impact does not hold with its impulses and speeds by differences.
+
+    [[M, -J^T], [J, 0]] [u+ - u; Lam] = [0; -(1 + e) v], M and J by differences of T and of velocities.
+
+    Args:
+        difference: left minus right, over impulses and speeds before and after it.
+    """
+    unknowns = (*found.after, *(row.impulse for row in found.rows))
+    for seed in SEEDS:
+        state = real_state(found.system, Random(seed))
+        solved = dict(zip(unknowns, _by_differences(found, state), strict=True))
+        (terms,) = jacobian((difference,), unknowns)
+        value, *slopes = _numbers((difference, *terms), {**state, **solved})
+        size = 1 + sum(abs(slope * solved[x]) for slope, x in zip(slopes, unknowns, strict=True))
+        if abs(value) > tolerances.CARRIED * size:
+            return True
+    return False
+
+
+def _by_differences(found: ImpactEquations, state: State) -> list[Any]:
+    """(speeds after it, impulses) at a state, in doubles."""
+    n, k, u = len(found.u), len(found.rows), found.u
+    scalars = (found.kinetic_energy, *(row.row.velocity for row in found.rows))
+
+    def at(*faster: int) -> np.ndarray:
+        moved = {u[i]: state[u[i]] + faster.count(i) for i in faster}
+        return np.array([float(x) for x in _numbers(scalars, {**state, **moved})])
+
+    here, by_one = at(), [at(i) for i in range(n)]
+    whole, right = np.zeros((n + k, n + k)), np.zeros(n + k)
+    for i in range(n):
+        for j in range(n):
+            whole[i, j] = at(i, j)[0] - by_one[i][0] - by_one[j][0] + here[0]
+        whole[n:, i] = by_one[i][1:] - here[1:]
+        whole[i, n:] = -whole[n:, i]
+    e = [0.0 if row.e is None else float(_numbers((row.e,), state)[0]) for row in found.rows]
+    right[n:] = -(1 + np.array(e)) * here[1:]
+    values = np.linalg.solve(whole, right)
+    values[:n] += [float(state[x]) for x in u]
+    return [fifty_digits().number(float(x)) for x in values]
+
+
 # -------- second way of the outputs ---------------------------------------------------------------------------
 # Impulses by differences: M from T of the bodies' particles, J from the rates of gaps, at speeds one larger.
 

@@ -24,12 +24,14 @@ from eomgen.codegen import Program, RightHandSide
 from eomgen.errors import ExpressionError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, with_accelerations
+from eomgen.mechanics.impacts import ImpactEquations
 from eomgen.mechanics.instant import Quantities
 from eomgen.mechanics.start import Start
 from eomgen.model import FUNCTIONS, OutputSource
 from eomgen.proof.at_a_state import NumericState, state_in_numbers
 from eomgen.proof.certificate import certify
 from eomgen.proof.check import Certificate, Check, Tally
+from eomgen.proof.impacts import sides_differ
 from eomgen.proof.in_numbers import STEP
 from eomgen.proof.instant import NearbyStates
 from eomgen.proof.states import closed_near, refuse_open
@@ -65,6 +67,7 @@ class JudgedEquation:
         equations: the equations of motion against which it was judged.
         at_rest: the motion starts with all speeds 0.
         difference: what is reported as too much on the left, as a text; "".
+        impact: of an equation of an impact that impact, and left minus right over its unknowns.
         derived: scalars of quantities that derivations name, M[x', y'], by the texts of what asks for them.
     """
 
@@ -80,6 +83,7 @@ class JudgedEquation:
     at_rest: bool = False
     difference: str = ""
     derived: Mapping[str, Scalar] = field(default_factory=dict)
+    impact: tuple[ImpactEquations, Scalar] | None = None
 
     @property
     def is_of_start(self) -> bool:
@@ -125,6 +129,9 @@ class _Again:
             NoValue: the numbers do not decide it.
         """
         each = self.judged
+        if each.impact is not None:
+            apart = sides_differ(*each.impact)
+            return "" if apart is not each.is_right else f"its sides {'differ' if apart else 'agree'} by numbers"
         if each.kind in NOT_DECIDED:
             raise NoValue(f"of a {each.kind} the solver of outputs decides, whose numbers `solve` proves")
         if not each.is_right and "while" in each.up_to:
@@ -358,6 +365,7 @@ class Sides:
         stands_for: names of the author and what they stand for.
         error: of what is known of the state, relative.
         constants: values for names of the author that stand for nothing.
+        impact: of an equation of an impact that impact, and left minus right over its unknowns.
         derived: scalars of quantities that derivations name.
     """
 

@@ -13,6 +13,8 @@ from scipy.optimize import nnls
 
 import eomgen
 from eomgen.errors import DerivationError, EomgenError, ModelError, UsageError
+from eomgen.judge.case import Case
+from eomgen.judge.judge import Judge
 from eomgen.mechanics.impacts import Hit, ImpactLaw, Jump
 from eomgen.mechanics.impacts.law import lemke, routh
 from eomgen.proof.contact_phases import stepped_impact
@@ -646,3 +648,87 @@ def test_a_stop_of_the_third_turn_of_a_ball_joint_throws_the_first():
 def test_limits_that_do_not_fit_the_angles_are_told(limits, said):
     with pytest.raises(ModelError, match=said):
         eomgen.loads(CARDAN.replace("LIMITS", limits))
+
+
+# -- verdicts on equations of impacts --------------------------------------------------------------
+
+
+def lines_of(text: str, contacts: str) -> list[str]:
+    """Every line that `derive --impact` prints."""
+    found = derived(text, contacts)
+    after = [f"{u.rstrip(chr(39))}_after{chr(39)} = {x}" for u, x in found["after"].items()]
+    impulses = [f"Lambda_{name.replace(' ', '_')} = {x}" for name, x in found["impulses"].items()]
+    joints = [
+        f"impulse_{a}({name}) = {x}"
+        for name, each in found["joints"].items()
+        for a, x in zip("xyz", each, strict=False)
+    ]
+    return [*found["equations"], *after, *impulses, *joints, f"T_before - T_after = {found['loss']}"]
+
+
+IMPACTS = [
+    pytest.param(DUMBBELL, "floor", id="dumbbell"),
+    pytest.param(TWO_BALLS, "floor", id="one of two"),
+    pytest.param(TWO_BALLS, "floor,between", id="both"),
+    pytest.param(CRANK, "piston_low", id="closed chain", marks=pytest.mark.slow),
+]
+
+
+@pytest.mark.parametrize("text, contacts", IMPACTS)
+def test_every_line_of_an_impact_is_judged_right_and_one_with_another_sign_wrong(text, contacts):
+    """left = right; left = -(right), where neither is 0."""
+    judge = Judge(Case(eomgen.loads(HEAD + text)))
+    for line in lines_of(text, contacts):
+        assert judge.verdict(line).verdict == "right", line
+        left, right = line.split(" = ")
+        if right != "0" and not left.startswith("impulse_"):
+            wrong = judge.verdict(f"{left} = -({right})")
+            assert wrong.verdict == "wrong" and wrong.kind == "impact", line
+
+
+@pytest.mark.parametrize(
+    "wrong, kind, said",
+    [
+        ("2*m*(y_after' - y') = -Lambda_floor", "sign", "Lambda_floor has the other sign"),
+        ("m*(y_after' - y') = Lambda_floor", "factor", "Lambda_floor lacks the factor 1/2"),
+        ("Lambda_floor = m*(1 - e)*(l*cos(phi)*phi' - 2*y')/(1 + cos(phi)^2)", "sign", "e has the other sign"),
+        ("Lambda_floor = m*(l*cos(phi)*phi' - 2*y')/(1 + cos(phi)^2)", "missing_term", "restitution is missing"),
+        ("x_after' = -x'", "sign", "the right side has the other sign"),
+        ("x_after' = 0", "other", "it is x_after' = x'"),
+        ("y_after' = y_after'", "other", "it holds whatever impulses and speeds are"),
+    ],
+)
+def test_what_is_wrong_in_an_impact_is_said(wrong, kind, said):
+    (cause,) = eomgen.verify(eomgen.loads(HEAD + DUMBBELL), wrong).causes
+    assert cause.kind == kind and said in cause.text
+
+
+@pytest.mark.parametrize(
+    "written",
+    [
+        r"T^{-} - T^{+} = \frac{m (1 - e) (1 + e) (2 \dot{y} - l \dot{\phi} \cos\phi)^{2}}{4 (1 + \cos^{2}\phi)}",
+        r"\dot{y}_{\mathrm{after}} - \frac{1}{2} l \, \dot{\phi}_{\mathrm{after}} \cos\phi = "
+        r"\frac{1}{2} l e \dot{\phi} \cos\phi - e \dot{y}",
+        r"2 m (\dot{y}^+ - \dot{y}^-) = \Lambda_{\mathrm{floor}}",
+        "2*m*(y'^+ - y') = impulse(floor)",
+    ],
+)
+def test_equations_of_impacts_are_read_as_people_write_them(written):
+    found = eomgen.verify(eomgen.loads(HEAD + DUMBBELL), written)
+    assert found.verdict == "right" and found.given == written
+
+
+@pytest.mark.slow
+def test_a_number_of_an_impact_is_judged_at_its_instant():
+    """Lam = (1 + e) v/(1/(2 m) + (l/2 cos phi)^2/I) = 7.507 N s where the ball touches, y = l/2 sin(phi)."""
+    model = eomgen.loads(HEAD + DUMBBELL)
+    assert eomgen.verify(model, "Lambda_floor = 7.507", at="y = l/2*sin(phi)")
+    assert eomgen.verify(model, "Lambda_floor = 7.6", at="y = l/2*sin(phi)").verdict == "wrong"
+
+
+def test_names_that_no_impact_has_and_impacts_that_rub_are_undecided():
+    model = eomgen.loads(HEAD + DUMBBELL)
+    assert eomgen.verify(model, "z_after' = 2").unknown == ("z_after'",)
+    rough = eomgen.loads(HEAD + DUMBBELL.replace('restitution = "e"', 'restitution = "e"\nfriction = 0.3'))
+    found = eomgen.verify(rough, "x_after' = x'")
+    assert found.verdict == "undecided" and "friction has a part in the impact" in found.reason

@@ -125,6 +125,11 @@ class ImpactEquations:
         return dict(zip(unknowns, (*(book_form(x, Work.ANSWER) for x in later), *short[n:]), strict=True))
 
     @property
+    def kinetic_energy(self) -> Scalar:
+        """T before the impact."""
+        return SystemInertia(self.system.motion).kinetic_energy
+
+    @property
     def impulses(self) -> dict[str, Scalar]:
         """The impulse of each row, by name."""
         return {row.name: self.solution[row.impulse] for row in self.rows}
@@ -133,7 +138,7 @@ class ImpactEquations:
     def loss(self) -> Scalar:
         """Kinetic energy that is lost: T before less T after."""
         if any(not is_zero(row.sigma) for row in self.rows) or self._is_driven:
-            T = SystemInertia(self.system.motion).kinetic_energy
+            T = self.kinetic_energy
             later = substituted((T,), {u: self.solution[x] for u, x in zip(self.u, self.after, strict=True)})[0]
             return book_form(T - later, Work.ANSWER)
         lost: Scalar = 0
