@@ -23,7 +23,7 @@ from typing import Any
 import sympy
 
 import eomgen
-from eomgen.symbolic.expression.traversal import operations
+from eomgen.symbolic.expression.derivatives import operations
 
 HERE = Path(__file__).parent
 MODELS = HERE.parent / "models"

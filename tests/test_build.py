@@ -16,9 +16,9 @@ from eomgen.codegen.program import Program
 from eomgen.codegen.rhs import RightHandSide
 from eomgen.codegen.targets.c import c_text
 from eomgen.errors import RunFailed, TextRefused, ToolMissing
+from eomgen.symbolic.expression.derivatives import Symbols
 from eomgen.symbolic.expression.formula import cos, sin, sqrt
 from eomgen.symbolic.expression.graph import Graph
-from eomgen.symbolic.expression.traversal import Symbols
 
 needs_cc = pytest.mark.skipif(build.compiler() is None, reason="no C compiler")
 

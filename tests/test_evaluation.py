@@ -11,8 +11,8 @@ from random_expressions import POINT, on_graph, polynomials, smooth, values_at
 
 from eomgen.errors import DerivationError
 from eomgen.symbolic.exact.equality import evaluate_once
+from eomgen.symbolic.expression.derivatives import Count, operations, order
 from eomgen.symbolic.expression.graph import Graph
-from eomgen.symbolic.expression.traversal import Count, operations, order
 from eomgen.symbolic.numeric.evaluation import (
     FLOAT,
     PRIME,

@@ -18,8 +18,7 @@ import eomgen
 from eomgen.cli import main
 from eomgen.errors import DerivationError, EomgenError, UsageError
 from eomgen.identification import fit
-from eomgen.identification.base_parameters import Group
-from eomgen.identification.constrained_rows import sampled_rows
+from eomgen.identification.base_parameters import Group, sampled_rows
 from eomgen.identification.fit import _begun_checked, noise_of, numbers_of
 from eomgen.identification.proof_of_groups import (
     bias_checked,

@@ -27,7 +27,7 @@ from eomgen.judge.case import Case
 from eomgen.judge.diagnosis import Mistake, fitting, in_other_units, samples_of
 from eomgen.judge.handwriting import transcript
 from eomgen.judge.judge import Judge
-from eomgen.judge.model_edits import EDITED, ModelEdit, ModelEdits, with_leaf
+from eomgen.judge.mistakes import EDITED, ModelEdit, ModelEdits, with_leaf
 from eomgen.judge.terms import Products, powers_of
 from eomgen.judge.truth import other_models
 from eomgen.proof.verdicts import verdicts_again

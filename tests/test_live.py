@@ -19,8 +19,7 @@ from slow_run import usual
 import eomgen
 from eomgen.errors import UsageError
 from eomgen.living.parts import Work, WrittenModel, parts_made
-from eomgen.living.server import LiveServer
-from eomgen.living.session import Watcher
+from eomgen.living.session import LiveServer, Watcher
 from eomgen.living.state import NAMES, LiveState
 from eomgen.model import model_at
 

@@ -18,7 +18,7 @@ from eomgen.errors import UsageError
 from eomgen.model import requested_of
 from eomgen.model.fields import Table
 from eomgen.proof.runs import SamplesOfRun
-from eomgen.simulation.curves import ChebyshevPieces, resolved_curve
+from eomgen.simulation.event_location import ChebyshevPieces, resolved_curve
 
 pytestmark = pytest.mark.slow
 

@@ -17,16 +17,16 @@ from eomgen.codegen.kernel_reader import solve_bordered
 from eomgen.codegen.lowering import stripped
 from eomgen.codegen.program import RESERVED, Assign, Program, Solve, identifier, identifiers, scheduled, traffic
 from eomgen.codegen.rhs import RightHandSide
-from eomgen.codegen.right_answers import vectors
 from eomgen.codegen.targets.base import Role
 from eomgen.codegen.targets.c import C, c_text
 from eomgen.codegen.targets.numpy import PYTHON
+from eomgen.codegen.written_files import vectors
 from eomgen.errors import DerivationError
 from eomgen.symbolic.exact.factorization import factor_solution, operation_count
+from eomgen.symbolic.expression.derivatives import operations, order
 from eomgen.symbolic.expression.formula import cos, sin
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.node import is_zero
-from eomgen.symbolic.expression.traversal import operations, order
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate, fifty_digits
 
 MODELS = Path(__file__).parent.parent / "models"

@@ -9,10 +9,10 @@ import pytest
 from each import each
 
 from eomgen.symbolic.exact.normal_forms import simplest
+from eomgen.symbolic.expression.derivatives import order
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.expression.text import parse
-from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.print.text import to_text
 

@@ -19,8 +19,8 @@ from eomgen.codegen.kernel_reader import solve_bordered
 from eomgen.codegen.lowering import statements
 from eomgen.codegen.program import Program, Solve
 from eomgen.codegen.rhs import RightHandSide
-from eomgen.codegen.right_answers import vectors
 from eomgen.codegen.targets.c import C, c_text
+from eomgen.codegen.written_files import vectors
 from eomgen.mechanics.dynamics.system import EquationsOfMotion
 from eomgen.study.programs import slopes_of
 from eomgen.symbolic.exact.factorization import Zeros

@@ -24,10 +24,9 @@ from eomgen import files
 from eomgen.codegen import build
 from eomgen.codegen.program import Program
 from eomgen.codegen.rhs import RightHandSide
-from eomgen.codegen.right_answers import outputs_at, single_vectors, vectors
 from eomgen.codegen.targets import ALL, wasm
 from eomgen.codegen.targets.base import Description, Role
-from eomgen.codegen.written_files import Written, texts_of
+from eomgen.codegen.written_files import Written, outputs_at, single_vectors, texts_of, vectors
 from eomgen.errors import DerivationError, UsageError
 from eomgen.proof.emitted_code import unwritten
 from eomgen.symbolic.expression.graph import Graph

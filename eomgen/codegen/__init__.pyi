@@ -1,10 +1,5 @@
 """Door of the room: what other rooms may import from `eomgen.codegen`."""
 
-from eomgen.codegen.batching import Batch as Batch
-
-# Options that are the same for all runs
-from eomgen.codegen.batching import BatchOptions as BatchOptions
-
 # Path of a compiler (the environment's, as CC, else cc, gcc, clang, or ziglang's), or None
 from eomgen.codegen.build import compiler as compiler
 
@@ -29,6 +24,10 @@ from eomgen.codegen.program import is_short as is_short
 
 # q' = N u + nu
 from eomgen.codegen.program import kinematic_rates as kinematic_rates
+from eomgen.codegen.rhs import Batch as Batch
+
+# Options that are the same for all runs
+from eomgen.codegen.rhs import BatchOptions as BatchOptions
 
 # (t, x) -> dx of a right-hand side; `address` is where a compiled one lies, None of others
 from eomgen.codegen.rhs import RateFunction as RateFunction
@@ -47,12 +46,6 @@ from eomgen.codegen.rhs import parameter_vector as parameter_vector
 
 # The targets of these names, all where none are given; UsageError where there is none of a name
 from eomgen.codegen.rhs import targets_named as targets_named
-
-# The program's outputs in any arithmetic
-from eomgen.codegen.right_answers import outputs_at as outputs_at
-
-# Right answers near the start (else near 0), half of them with inputs given where there are any; and there
-from eomgen.codegen.right_answers import vectors as vectors
 
 # Addresses of a compiled right-hand side and its constants; `kept` keeps them alive
 from eomgen.codegen.targets.base import Address as Address
@@ -81,3 +74,9 @@ from eomgen.codegen.written_files import Files as Files
 
 # One function of generated code
 from eomgen.codegen.written_files import Written as Written
+
+# The program's outputs in any arithmetic
+from eomgen.codegen.written_files import outputs_at as outputs_at
+
+# Right answers near the start (else near 0), half of them with inputs given where there are any; and there
+from eomgen.codegen.written_files import vectors as vectors

@@ -1,7 +1,7 @@
 /* Many runs of x' = f(t, x, p), LANES at a time, each with its own parameters, time and steps: a lane whose
    run is over takes the next one. What a run gives does not depend on the lane that it runs in, nor on its neighbours.
 
-   It stands behind codegen/batching.py, which fills the struct; eomgen_constants and eomgen_evaluate stand before it. */
+   It stands behind codegen/rhs.py, which fills the struct; eomgen_constants and eomgen_evaluate stand before it. */
 
 enum { RUNS, FINISHED, NOT_FINITE, TOO_SMALL, TOO_MANY, STIFF }; /* of a run */
 

@@ -10,14 +10,16 @@ from types import FunctionType
 from typing import Any
 
 from eomgen.codegen import kernels
-from eomgen.codegen.expressions import ATOM, PRODUCT, SUM, RankedText, held
 from eomgen.codegen.statements import (
+    ATOM,
     CHANGED,
     INDICES,
     INT,
     PLACES,
+    PRODUCT,
     REAL,
     ROOM,
+    SUM,
     Array,
     Call,
     For,
@@ -26,9 +28,11 @@ from eomgen.codegen.statements import (
     Language,
     Let,
     Put,
+    RankedText,
     Return,
     Statement,
     Table,
+    held,
 )
 from eomgen.symbolic.numeric import tolerances
 

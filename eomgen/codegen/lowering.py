@@ -15,7 +15,6 @@ from functools import cached_property
 from itertools import accumulate, chain, pairwise
 from typing import Any
 
-from eomgen.codegen.expressions import ExpressionWriter, used_once
 from eomgen.codegen.kernel_reader import kernel
 from eomgen.codegen.program import Assign, Program, Solve, identifiers, scheduled
 from eomgen.codegen.statements import (
@@ -27,6 +26,7 @@ from eomgen.codegen.statements import (
     ROOM,
     Array,
     Call,
+    ExpressionWriter,
     Function,
     If,
     Language,
@@ -35,6 +35,7 @@ from eomgen.codegen.statements import (
     Return,
     Statement,
     Table,
+    used_once,
 )
 from eomgen.frozen import dataclass
 from eomgen.symbolic.expression import Node, Sampled, Scalar

@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
+import random
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from types import MappingProxyType
+from typing import Any
 
-from eomgen.codegen.program import Program, stem_of
-from eomgen.codegen.rhs import target_named, targets_named
-from eomgen.codegen.right_answers import single_error, single_vectors, vectors
+import numpy as np
+
+from eomgen.codegen.kernel_reader import solve_bordered
+from eomgen.codegen.program import Program, Solve, at_unit_norms, stem_of
+from eomgen.codegen.rhs import RightHandSide, target_named, targets_named
 from eomgen.codegen.targets.base import Called, Description, Emitted, FileContent, Role, Target, TestVector, header
 from eomgen.codegen.targets.c_lanes import RUN_USE, integrator_files
-from eomgen.errors import visible
+from eomgen.errors import DerivationError, visible
 from eomgen.files import json_text
 from eomgen.frozen import dataclass
-from eomgen.symbolic.expression import ScalarRows
-from eomgen.symbolic.numeric import tolerances
+from eomgen.symbolic.expression import Fraction, Node, ScalarRows
+from eomgen.symbolic.numeric import Arithmetic, evaluate, fifty_digits, tolerances
 from eomgen.version import SCHEMA_VERSION
 
 
@@ -306,3 +310,230 @@ def _listed(description: Description, indent: str) -> list[str]:
     ]
     listed = ",\n".join(f"{indent} {json_text(row)}" for row in rows)
     return [f'{indent}"vectors": [', *([listed] if rows else []), f"{indent}]"]
+
+
+# -------- right answers ---------------------------------------------------------------------------------------
+# Program -> right answers at random states, in 50 digits, with which emitted code is compared.
+
+
+TRIES = 60
+PARTIAL = 2  # states, at most, at which some result has no value
+NEAR = Fraction(1, 10**6)  # of a state: so far from it, what has no value there has none either
+
+
+def vectors(
+    program: Program,
+    *,
+    x0: Any = None,
+    p0: Any = None,
+    count: int = 6,
+    seed: int = 1,
+    held: Sequence[tuple[float, Sequence[float], Sequence[float]]] = (),
+) -> tuple[TestVector, ...]:
+    """Right answers near the start (else near 0), half of them with inputs given where there are any; and there.
+
+    A state at which dependent constraint rows contradict each other has no single answer (one language may satisfy
+    one row, another one the other): such states serve only where there are no others.
+
+    Args:
+        x0, p0: start and parameter values; where None, states near 0 and parameters between 0.5 and 2.
+        held: (t, x, p) at which all constraints are satisfied: right answers there too.
+    Raises:
+        DerivationError: no states were found at which the right-hand side has a value.
+    """
+    rng = random.Random(seed)
+    floats = RightHandSide.of(program, "numpy")
+    found: list[TestVector] = []
+    partial: list[TestVector] = []
+    torn: list[TestVector] = []
+    for _ in range(TRIES):
+        if len(found) == count or (not found and len(torn) == count):
+            break
+        vector = _vector(program, floats, _state(program, rng, x0, p0, with_inputs=len(found or torn) % 2 == 1))
+        if vector is None:
+            continue
+        if any(value != value for value in vector.result):
+            partial.append(vector)
+        else:
+            (torn if _contradicts(program, vector) else found).append(vector)
+    if not found and not torn:
+        raise DerivationError(
+            "the equations have no value at any of the states tried for test vectors",
+            fix="give a start, and parameters, at which the equations have values",
+        )
+    if not held:
+        found = found or torn
+    like = (found or torn)[0]
+    where_held = [replace(like, t=t, x=tuple(x), p=tuple(p), inputs=None, result=()) for t, x, p in held]
+    states = (*where_held, *_special(program, like, x0))
+    special = [vector for vector in (_vector(program, floats, state) for state in states) if vector is not None]
+    return (*(found or ([] if special else torn)), *special, *partial[:PARTIAL])
+
+
+def _special(program: Program, like: TestVector, x0: Any) -> list[TestVector]:
+    """Vectors at states where pieces and singular positions are met: the start, and at rest there; or all zero."""
+    x = tuple([0.0] * len(program.states) if x0 is None else [float(v) for v in x0])
+    q, u = len(program.symbols.q), len(program.symbols.u)
+    states = dict.fromkeys([x, (*x[:q], *[0.0] * u, *x[q + u :])])
+    return [replace(like, t=0.0, x=state, inputs=None, result=()) for state in states]
+
+
+def outputs_at(program: Program, values: dict[Node, Any], arithmetic: Arithmetic) -> list[Any]:
+    """The program's outputs in any arithmetic.
+
+    Args:
+        values: of t, x, p, and of inputs that are given; the others follow from their own expressions.
+    """
+    values = _with_inputs(program, values, arithmetic)
+    for solve in (s for s in program.statements if type(s) is Solve):
+        values = values | _solved(solve, evaluate(solve.entries, values, arithmetic))
+    return evaluate(program.outputs, values, arithmetic)
+
+
+def _with_inputs(program: Program, values: dict[Node, Any], arithmetic: Arithmetic) -> dict[Node, Any]:
+    """The values, and those of inputs that are not given by their own expressions."""
+    inputs = list(program.symbols.inputs.values())
+    missing = [x for x in inputs if x not in values]
+    own = [program.defaults[inputs.index(x)] for x in missing]
+    return values | dict(zip(missing, evaluate(own, values, arithmetic), strict=True))
+
+
+def _blocks(solve: Solve, entries: Sequence[Any]) -> tuple[list[Any], Sequence[Any], Sequence[Any], Sequence[Any]]:
+    """M (n x n) and J (k x n), row after row, f and g of  M a - J^T lam = f,  J a = g."""
+    n, k = len(solve.matrix), len(solve.border)
+    first = n * (n + 1) // 2
+    M = [entries[max(i, j) * (max(i, j) + 1) // 2 + min(i, j)] for i in range(n) for j in range(n)]
+    right = entries[first + k * n :]
+    return M, entries[first : first + k * n], right[:n], right[n:]
+
+
+def _solved(solve: Solve, entries: Sequence[Any]) -> dict[Node, Any]:
+    return dict(zip(solve.unknowns, solve_bordered(*_blocks(solve, entries), solve.tables), strict=True))
+
+
+def _contradicts(program: Program, vector: TestVector) -> bool:
+    """True if J a = g has no solution there: one of two dependent rows is left open by the accelerations."""
+    solves = [s for s in program.statements if type(s) is Solve]
+    if not any(solve.border for solve in solves):
+        return False
+    arithmetic = fifty_digits(partial=True)
+    values = {node: arithmetic.number(number) for node, number in _exact(program, vector).items()}
+    values = _with_inputs(program, values, arithmetic)
+    for solve in solves:
+        entries = evaluate(solve.entries, values, arithmetic)
+        found = _solved(solve, entries)
+        if _is_left_open(solve, entries, found):
+            return True
+        values = values | found
+    return False
+
+
+def _is_left_open(solve: Solve, entries: Sequence[Any], found: Mapping[Node, Any]) -> bool:
+    """True if the accelerations of a solution leave a row of J a = g open."""
+    _, J, _, g = _blocks(solve, entries)
+    n = len(solve.matrix)
+    a = [found[x] for x in solve.unknowns[:n]]
+    for i, due in enumerate(g):
+        terms: list[Any] = [x * y for x, y in zip(J[i * n : (i + 1) * n], a, strict=True)]
+        if abs(sum(terms, start=-due)) > tolerances.COMPUTED * max(map(abs, (*terms, due))):
+            return True
+    return False
+
+
+def _state(program: Program, rng: random.Random, x0: Any, p0: Any, with_inputs: bool) -> TestVector:
+    """A state without its answer; short decimals, for the reader."""
+    symbols = program.symbols
+    start = [0.0] * len(program.states) if x0 is None else [float(v) for v in x0]
+    x = tuple(at_unit_norms([round(v + rng.uniform(-1, 1), 3) for v in start], program.unit_quaternions).tolist())
+    p = tuple(round(rng.uniform(0.5, 2), 3) for _ in symbols.parameters) if p0 is None else tuple(map(float, p0))
+    inputs = tuple(round(rng.uniform(-1, 1), 3) for _ in symbols.inputs)
+    t, a = round(rng.uniform(0, 2), 3), tuple(round(rng.uniform(-2, 2), 3) for _ in program.accelerations)
+    return TestVector(t, x, p, inputs if with_inputs and inputs else None, (), tolerances.SOLVED, a)
+
+
+def _vector(program: Program, floats: RightHandSide, state: TestVector) -> TestVector | None:
+    """The state with its answer, or None where there is none."""
+    exact = _exact(program, state)
+    result = _right(program, exact)
+    found = floats(state.t, [*state.x, *state.a], state.p, state.inputs or ())
+    known = [(a, b) for a, b in zip(found, result, strict=True) if b == b]
+    largest = max(1.0, *(abs(b) for _, b in known)) if known else 1.0
+    error = max((abs(a - b) for a, b in known), default=0.0) / largest
+    if not error < tolerances.COMPUTED or (len(known) < len(result) and not _is_partial_nearby(program, exact, result)):
+        return None
+    return replace(state, result=result, tolerance=float(max(tolerances.SOLVED, 10 * error)))
+
+
+def _exact(program: Program, state: TestVector) -> dict[Node, Fraction]:
+    """Arguments that a vector gives to a program, as the exact values of its doubles."""
+    symbols = program.symbols
+    arguments = [symbols.t, *program.moving, *symbols.parameters.values()]
+    numbers = [state.t, *state.x, *state.a, *state.p]
+    if state.inputs is not None:
+        arguments += symbols.inputs.values()
+        numbers += state.inputs
+    return dict(zip(arguments, map(Fraction, numbers), strict=True))
+
+
+def _right(program: Program, exact: dict[Node, Fraction]) -> tuple[float, ...]:
+    """The outputs from 50 digits, nan where there is no value."""
+    arithmetic = fifty_digits(partial=True)
+    values = {node: arithmetic.number(number) for node, number in exact.items()}
+    return tuple(float(value) for value in outputs_at(program, values, arithmetic))
+
+
+def _is_partial_nearby(program: Program, exact: dict[Node, Fraction], result: Sequence[float]) -> bool:
+    """True if the same outputs have no value a little before and after: not at an edge, nor by a division by zero."""
+    missing = [value != value for value in result]
+    near = ({node: x * (1 + away) + away for node, x in exact.items()} for away in (NEAR, -NEAR))
+    return all([value != value for value in _right(program, state)] == missing for state in near)
+
+
+# -------- single precision ------------------------------------------------------------------------------------
+# How near single precision comes: the tolerances of its vectors, measured, and the errors of a text that is run.
+
+
+DRAWS = 16  # states around one, by which it is measured what rounding does
+GROWN = 8  # times what the arguments' rounding does: that of all operations
+
+
+def single_vectors(program: Program, vectors: Sequence[TestVector]) -> tuple[TestVector, ...]:
+    """The vectors with the tolerances of single precision, measured at states that differ by rounding only."""
+    rhs, rng = RightHandSide.of(program, "numpy"), random.Random(1)
+
+    def beside(values: Sequence[float]) -> list[float]:
+        return [x * (1 + rng.choice((-1, 1)) * tolerances.SINGLE_ROUNDING) for x in values]
+
+    def measured(v: TestVector) -> TestVector:
+        size = max([1.0, *(abs(y) for y in v.result if y == y)])
+        far = 0.0
+        for _ in range(DRAWS):
+            found = rhs(v.t, beside([*v.x, *v.a]), beside(v.p), beside(v.inputs or ()))
+            far = max([far, *(abs(a - b) for a, b in zip(found, v.result, strict=True) if a == a and b == b)])
+        x, a, p, result = map(_in_range, (v.x, v.a, v.p, v.result))
+        inputs = None if v.inputs is None else _in_range(v.inputs)
+        return replace(
+            v, x=x, a=a, p=p, inputs=inputs, result=result, tolerance=float(tolerances.SINGLE + GROWN * far / size)
+        )
+
+    return tuple(map(measured, vectors))
+
+
+def _in_range(values: Sequence[float]) -> tuple[float, ...]:
+    """Numbers, 0 where single precision has none so small: compilers warn of such a one."""
+    return tuple(0.0 if abs(x) < np.finfo(np.float32).tiny else x for x in values)
+
+
+def single_error(called: Called, vectors: Sequence[TestVector]) -> float:
+    """The largest error of a text in single precision against its tolerance, at all vectors.
+
+    Args:
+        called: the text, run.
+    """
+    worst = 0.0
+    for v in vectors:
+        size = max([1.0, *(abs(y) for y in v.result if y == y)])
+        for a, b in zip(called(v.t, v.x, v.a, v.p, v.inputs), v.result, strict=True):
+            if b == b:
+                worst = max(worst, abs(a - b) / size / v.tolerance if a == a else float("inf"))
+    return worst

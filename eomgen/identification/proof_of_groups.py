@@ -21,8 +21,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from eomgen.frozen import dataclass
-from eomgen.identification.base_parameters import BaseParameters, Group
-from eomgen.identification.constrained_rows import columns_along, constrained_states, in_50_digits
+from eomgen.identification.base_parameters import BaseParameters, Group, columns_along, constrained_states, in_50_digits
 from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.mechanics.free_bodies import equations_of_motion
 from eomgen.proof import Certificate, Check, PhaseMotion, Tally, TriedState, attempted, certify, checked, first_wrong

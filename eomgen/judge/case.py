@@ -11,8 +11,7 @@ from typing import Any
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, ModelError
 from eomgen.frozen import dataclass
 from eomgen.judge.decision import Follows, combination, is_zero_everywhere, linear_row, vanish_at
-from eomgen.judge.mistakes import Mistakes
-from eomgen.judge.model_edits import ModelEdit, edited_models
+from eomgen.judge.mistakes import Mistakes, ModelEdit, edited_models
 from eomgen.judge.reading import DERIVED, MULTIPLIER, HandEquation, Reading, side_value
 from eomgen.judge.terms import Edits
 from eomgen.mechanics.dynamics import Contributions, Extent, System

@@ -16,7 +16,7 @@ from eomgen.judge.case import Case
 from eomgen.judge.comparison import Comparison, is_linear, linearized
 from eomgen.judge.decision import combination, is_zero_everywhere, linear_row, states_of, vanish_nearly
 from eomgen.judge.diagnosis import PLAINEST, SHORTER, TERMS, Explanation, Mistake, Share
-from eomgen.judge.model_edits import ModelEdits
+from eomgen.judge.mistakes import ModelEdits
 from eomgen.judge.reading import HandEquation
 from eomgen.mechanics.dynamics import Extent
 from eomgen.model import AtRest, WrittenEquation

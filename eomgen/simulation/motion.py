@@ -15,9 +15,8 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import PLACE
 from eomgen.mechanics.dynamics import SMOOTH, EquationsOfMotion, signs_of_rates
 from eomgen.simulation.contacts import Configuration
-from eomgen.simulation.curves import nodes_between, transform
 from eomgen.simulation.departure import RestDeparture
-from eomgen.simulation.event_location import TOUCH, Events
+from eomgen.simulation.event_location import TOUCH, Events, nodes_between, transform
 from eomgen.simulation.integrator import Run, Stepping, march
 from eomgen.simulation.phase_change import PhaseStart, next_start
 from eomgen.simulation.phase_model import PhaseModel

@@ -18,7 +18,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.instant import Quantities
 from eomgen.model import Model, Output, OutputSource, WrittenEquation, formula_at, requested_of
 from eomgen.simulation.columns import OutputColumns
-from eomgen.simulation.curves import ChebyshevPieces, resolved_curve
+from eomgen.simulation.event_location import ChebyshevPieces, resolved_curve
 from eomgen.simulation.motion import DenseMotion, Plan
 from eomgen.simulation.phase_run import PhaseRun
 from eomgen.symbolic.expression import Call, Expression

@@ -18,11 +18,11 @@ import eomgen
 from eomgen.codegen.lowering import statements
 from eomgen.codegen.program import Program
 from eomgen.codegen.rhs import RightHandSide, target_named
-from eomgen.codegen.right_answers import vectors
 from eomgen.codegen.targets.base import Role
 from eomgen.codegen.targets.c import C
 from eomgen.codegen.targets.javascript import JAVASCRIPT
 from eomgen.codegen.targets.numpy import PYTHON
+from eomgen.codegen.written_files import vectors
 
 pytestmark = pytest.mark.slow
 

@@ -24,11 +24,10 @@ from eomgen import files
 from eomgen.codegen import build
 from eomgen.codegen.program import RESERVED, Program
 from eomgen.codegen.rhs import target_named
-from eomgen.codegen.right_answers import vectors
 from eomgen.codegen.statements import Language
 from eomgen.codegen.targets import ALL, cpp, fortran, wasm
 from eomgen.codegen.targets.base import Description
-from eomgen.codegen.written_files import texts_of
+from eomgen.codegen.written_files import texts_of, vectors
 
 pytestmark = pytest.mark.slow
 

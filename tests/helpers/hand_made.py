@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 from eomgen.mechanics.dynamics.system import EquationsOfMotion
+from eomgen.symbolic.expression.derivatives import Symbols
 from eomgen.symbolic.expression.formula import cos, sin
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.node import Scalar
-from eomgen.symbolic.expression.traversal import Symbols
 
 
 def symbols(

@@ -16,12 +16,11 @@ from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.equilibrium.equations import StaticEquations
 from eomgen.mechanics.free_bodies import velocity_plan as blocks
 from eomgen.mechanics.free_bodies.structure import Structure
-from eomgen.mechanics.linearization.first_order import FirstOrder
+from eomgen.mechanics.linearization.reference import FirstOrder
 from eomgen.mechanics.statics.virtual_work import by_virtual_work, requested_reactions
 from eomgen.symbolic.exact.equality import real_values
-from eomgen.symbolic.expression.derivatives import substituted
+from eomgen.symbolic.expression.derivatives import order, substituted
 from eomgen.symbolic.expression.graph import Graph
-from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import fifty_digits
 
 chain = runpy.run_path(str(MODELS / "chain.py"))["chain"]

@@ -19,7 +19,7 @@ from eomgen.cli import main
 from eomgen.codegen.build import compiler
 from eomgen.codegen.program import Program
 from eomgen.codegen.rhs import RightHandSide
-from eomgen.codegen.right_answers import vectors
+from eomgen.codegen.written_files import vectors
 from eomgen.errors import DerivationError, UsageError
 from eomgen.mechanics.dynamics import formulations as projection
 from eomgen.model.fields import Table

@@ -11,9 +11,8 @@ from eomgen.documents import reaction_values
 from eomgen.documents.reading import Reader
 from eomgen.documents.statements import Omitted
 from eomgen.mechanics.integrals.first_integrals import FirstIntegrals
-from eomgen.symbolic.expression.derivatives import substituted
+from eomgen.symbolic.expression.derivatives import order, substituted
 from eomgen.symbolic.expression.formula import function
-from eomgen.symbolic.expression.traversal import order
 from eomgen.verbs.derive import derive_document
 
 pytestmark = pytest.mark.slow

@@ -9,7 +9,7 @@ from dataclasses import replace
 import pytest
 
 import eomgen
-from eomgen.codegen import right_answers
+from eomgen.codegen import written_files
 from eomgen.codegen.targets.fmu import description
 from eomgen.generated import generate
 from eomgen.proof.emitted_code import fmu_reported
@@ -34,7 +34,7 @@ weight = { kind = "gravity", acceleration = [0, "-g"] }
 @pytest.mark.parametrize("wrong", ["result", "tolerance"])
 def test_a_test_vector_that_is_another_one_is_contradicted(wrong, monkeypatch):
     """M a = forcing + J^T lam with the a that is told."""
-    right = right_answers._vector
+    right = written_files._vector
 
     def other(program, floats, state):
         found = right(program, floats, state)
@@ -44,7 +44,7 @@ def test_a_test_vector_that_is_another_one_is_contradicted(wrong, monkeypatch):
         return replace(found, **{wrong: changes[wrong]})
 
     assert generate(eomgen.loads(PENDULUM), ["numpy"]).certify().ok
-    monkeypatch.setattr(right_answers, "_vector", other)
+    monkeypatch.setattr(written_files, "_vector", other)
     failing = [c.name for c in generate(eomgen.loads(PENDULUM), ["numpy"]).certify().checks if c.ok is False]
     assert failing and all("test vectors" in name for name in failing)
 

@@ -14,10 +14,9 @@ from dataclasses import replace
 from functools import cache
 
 from eomgen.codegen import build
-from eomgen.codegen.expressions import ATOM, RankedText, ranked_number
 from eomgen.codegen.lowering import statements
 from eomgen.codegen.program import Program
-from eomgen.codegen.statements import CHANGED, READ, REAL, ROOM, Language
+from eomgen.codegen.statements import ATOM, CHANGED, READ, REAL, ROOM, Language, RankedText, ranked_number
 from eomgen.codegen.targets.c import C, c_text
 from eomgen.symbolic.expression import NAMES, Number
 

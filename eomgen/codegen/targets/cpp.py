@@ -9,9 +9,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from eomgen.codegen.build import Compiler
-from eomgen.codegen.expressions import ATOM, PRODUCT, SUM, RankedText, ranked_number
 from eomgen.codegen.lowering import Statements
-from eomgen.codegen.statements import INDICES, INT, READ
+from eomgen.codegen.statements import ATOM, INDICES, INT, PRODUCT, READ, SUM, RankedText, ranked_number
 from eomgen.codegen.targets.base import QUOTED, SUFFIXED, SingleWords, by_cases, in_quotes
 from eomgen.codegen.targets.c import CONSTANTS, ENTRY, SELF_TEST, C
 from eomgen.codegen.targets.c import FORM as C_FORM

@@ -11,9 +11,24 @@ from dataclasses import replace
 from typing import Any
 
 from eomgen.codegen.build import Compiler
-from eomgen.codegen.expressions import ATOM, PRODUCT, SUM, RankedText, ranked_number
 from eomgen.codegen.lowering import Statements
-from eomgen.codegen.statements import CHANGED, GIVEN, INDICES, INT, PLACES, READ, REAL, ROOM, Language, Table
+from eomgen.codegen.statements import (
+    ATOM,
+    CHANGED,
+    GIVEN,
+    INDICES,
+    INT,
+    PLACES,
+    PRODUCT,
+    READ,
+    REAL,
+    ROOM,
+    SUM,
+    Language,
+    RankedText,
+    Table,
+    ranked_number,
+)
 from eomgen.codegen.targets.base import CHECK, FileForm, SingleWords, by_cases
 from eomgen.codegen.targets.loading import compiled_target
 from eomgen.symbolic.expression import Number

@@ -15,10 +15,16 @@ from eomgen.errors import DerivationError, MissingValues
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Closure, Constraints, Row
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.equilibrium.coordinates_at_rest import Chosen, chosen_coordinates, holds_velocities, unheld
 from eomgen.mechanics.equilibrium.equations import StaticEquations
 from eomgen.mechanics.equilibrium.places import ANYWHERE, ClosedForms, Guess, Places, places_of_rest
-from eomgen.mechanics.equilibrium.stability import Stability, stability_of
+from eomgen.mechanics.equilibrium.stability import (
+    Chosen,
+    Stability,
+    chosen_coordinates,
+    holds_velocities,
+    stability_of,
+    unheld,
+)
 from eomgen.mechanics.free_bodies import Indeterminate, Reactions
 from eomgen.mechanics.kinematics import ContactMode, Located, Lock, Motion
 from eomgen.mechanics.start import shown_numbers

@@ -1,7 +1,6 @@
 """Door of the folder: what other folders may import from `eomgen.mechanics.linearization`."""
 
 # The equations of motion of a system, and their first derivatives, as graph scalars
-from eomgen.mechanics.linearization.first_order import FirstOrder as FirstOrder
 from eomgen.mechanics.linearization.linearization import CORNERS as CORNERS
 
 # The equations of small motions about a reference
@@ -31,6 +30,7 @@ from eomgen.mechanics.linearization.reduction import LinearEquations as LinearEq
 
 # The steady motions that one belongs to
 from eomgen.mechanics.linearization.reference import Family as Family
+from eomgen.mechanics.linearization.reference import FirstOrder as FirstOrder
 
 # The state about which the equations are linearized
 from eomgen.mechanics.linearization.reference import ReferenceMotion as ReferenceMotion

@@ -17,11 +17,6 @@ from eomgen.mechanics.dynamics import System, Valueless
 from eomgen.mechanics.equilibrium import standing_system
 from eomgen.mechanics.free_bodies import SystemFriction
 from eomgen.mechanics.kinematics import Located
-from eomgen.mechanics.linearization.first_order import (
-    Choice,
-    FirstOrder,
-    choice_of,
-)
 from eomgen.mechanics.linearization.reduction import (
     LinearEquations,
     Reducing,
@@ -42,8 +37,11 @@ from eomgen.mechanics.linearization.reference import (
     EQUILIBRIUM,
     START,
     STEADY,
+    Choice,
+    FirstOrder,
     ReferenceMotion,
     at_the_start,
+    choice_of,
     in_closed_form,
     place_of_rest,
     relative_rest,

@@ -14,11 +14,11 @@ import numpy as np
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.linearization.first_order import (
+from eomgen.mechanics.linearization.reference import (
     Choice,
     FirstOrder,
+    ReferenceMotion,
 )
-from eomgen.mechanics.linearization.reference import ReferenceMotion
 from eomgen.mechanics.state import At, Entries, NumberField
 from eomgen.model import rotation_of
 from eomgen.symbolic.exact import Polynomial, cramer

@@ -14,9 +14,8 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import nearest_root
 from eomgen.mechanics.equilibrium import StaticEquations, places_of_rest
 from eomgen.mechanics.kinematics import Located
-from eomgen.mechanics.linearization.first_order import Choice, FirstOrder, choice_of
 from eomgen.mechanics.linearization.reduction import LinearEquations, Reducing, dependent_speeds, floats, unsettled
-from eomgen.mechanics.linearization.reference import Family, ReferenceMotion
+from eomgen.mechanics.linearization.reference import Choice, Family, FirstOrder, ReferenceMotion, choice_of
 from eomgen.mechanics.state import Exact, Numbers, Split
 from eomgen.symbolic.exact import simplest, vanishes
 from eomgen.symbolic.expression import Node, Scalar, State, depends_on, is_zero, operations, substituted

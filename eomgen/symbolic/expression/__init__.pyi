@@ -1,6 +1,13 @@
 """Door of the folder: what other folders may import from `eomgen.symbolic.expression`."""
 
 # True where one of the symbols (or nodes) occurs in x
+from eomgen.symbolic.expression.derivatives import FREE as FREE
+
+# Number of operations that an evaluation takes
+from eomgen.symbolic.expression.derivatives import Count as Count
+
+# The symbols of one derivation
+from eomgen.symbolic.expression.derivatives import Symbols as Symbols
 from eomgen.symbolic.expression.derivatives import depends_on as depends_on
 
 # True where one of the symbols (or nodes) occurs in one of them: what they share is looked through once
@@ -12,8 +19,17 @@ from eomgen.symbolic.expression.derivatives import derivative as derivative
 # (dx/dsymbol for each symbol), in one sweep from the result back to the symbols
 from eomgen.symbolic.expression.derivatives import gradient as gradient
 
+# True if a number with all its digits, as of a double, occurs in a scalar: that is a number and no formula
+from eomgen.symbolic.expression.derivatives import holds_many_digits as holds_many_digits
+
 # The matrix d outputs / d symbols, one row an output, by whichever sweeps are fewer, or meet far fewer nodes
 from eomgen.symbolic.expression.derivatives import jacobian as jacobian
+
+# The operations in the outputs, each sub-expression once
+from eomgen.symbolic.expression.derivatives import operations as operations
+
+# Every node that the outputs need, arguments before results; what is `given` is not looked into
+from eomgen.symbolic.expression.derivatives import order as order
 
 # (sum over the outputs of weight d output/dsymbol, for each symbol), in one sweep: A^T w of the Jacobian A
 from eomgen.symbolic.expression.derivatives import pullback as pullback
@@ -29,6 +45,9 @@ from eomgen.symbolic.expression.derivatives import tangent as tangent
 
 # The derivatives of the outputs by each symbol, in a sweep for each, through what depends on it alone
 from eomgen.symbolic.expression.derivatives import tangents as tangents
+
+# (graph, outputs) with the constants that have no graph of their own taken into that of the others
+from eomgen.symbolic.expression.derivatives import united as united
 
 # The expression of a number or a text; a float means the decimal that it is written as (0.1 is 1/10)
 # A function that a model declares by a table of values
@@ -185,22 +204,3 @@ from eomgen.symbolic.expression.text import spelled as spelled
 
 # The token that begins at or after this position
 from eomgen.symbolic.expression.text import token_at as token_at
-from eomgen.symbolic.expression.traversal import FREE as FREE
-
-# Number of operations that an evaluation takes
-from eomgen.symbolic.expression.traversal import Count as Count
-
-# The symbols of one derivation
-from eomgen.symbolic.expression.traversal import Symbols as Symbols
-
-# True if a number with all its digits, as of a double, occurs in a scalar: that is a number and no formula
-from eomgen.symbolic.expression.traversal import holds_many_digits as holds_many_digits
-
-# The operations in the outputs, each sub-expression once
-from eomgen.symbolic.expression.traversal import operations as operations
-
-# Every node that the outputs need, arguments before results; what is `given` is not looked into
-from eomgen.symbolic.expression.traversal import order as order
-
-# (graph, outputs) with the constants that have no graph of their own taken into that of the others
-from eomgen.symbolic.expression.traversal import united as united
