@@ -20,7 +20,7 @@ from eomgen.errors import DerivationError, visible
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import GROUND, BodyLink
-from eomgen.model import Model, ModelOrPath, UniformField
+from eomgen.model import Model, ModelOrPath
 from eomgen.pipeline import derive
 from eomgen.proof import imported_otherwise, unsaid_otherwise
 from eomgen.robots import UNLIMITED, LeftOut, LegalNames, remarked
@@ -298,7 +298,7 @@ class _Writing:
         constraints = [name for name in self.system.scope.model.constraints if name not in said]
         fields = self.numbers(self.system.loads.fields, "forces")
         applied = self.system.loads.applied
-        weight = [x.name for x in applied if all(isinstance(load, UniformField) for load in x.loads or (None,))]
+        weight = [x.name for x in applied if x.is_field]
         usual = fields[:2] == [0.0, 0.0] and abs(fields[2] + G) < tolerances.ROUNDING
         forces = [name for name in self.system.scope.model.forces if name not in weight or not usual]
         for what, names in (("forces", forces), ("constraints", constraints)):

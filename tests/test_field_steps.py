@@ -13,7 +13,7 @@ from eomgen.documents.result import ALL as FORMATS
 from eomgen.mechanics.instant.motion_kind import Kinds
 from eomgen.results.at_instant.result import centrode_panel
 from eomgen.results.at_instant.steps import field_payload, field_steps, relative_payload, relative_steps
-from eomgen.study import MotionFromStart, Study
+from eomgen.study import CentrodeCurves, MotionFromStart, Study
 from eomgen.symbolic.exact.normal_forms import equal
 from eomgen.symbolic.expression.text import parse
 
@@ -146,7 +146,7 @@ def test_a_centrode_is_drawn_where_the_centre_runs():
     system = motion.phase.system
     (found,) = Kinds(system, motion.start).centrodes()
     panel = Figure().subplots()
-    centrode_panel(panel, system, found, {**motion.phase.numeric_parameters, **motion.numbers})
+    centrode_panel(panel, CentrodeCurves.of(system, found, {**motion.phase.numeric_parameters, **motion.numbers}))
     fixed, moving, now = (line.get_xydata() for line in panel.get_lines())
     assert abs((fixed**2).sum(axis=1) ** 0.5 - 2).max() < 1e-9
     assert abs(((moving - now / 2) ** 2).sum(axis=1) ** 0.5 - 1).max() < 1e-9

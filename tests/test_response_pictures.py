@@ -14,7 +14,7 @@ import eomgen
 from eomgen.cli import main
 from eomgen.documents.figures import VIEWS, resultants
 from eomgen.model.replaced import Range
-from eomgen.results.small_motions.pictures import dashes, roots_over
+from eomgen.results.small_motions.pictures import dashes
 from eomgen.runs.single_run import one_turn
 
 pytestmark = pytest.mark.slow
@@ -114,7 +114,7 @@ def run() -> eomgen.Trajectory:
 def test_roots_over_a_parameter_are_those_of_the_model_with_it():
     """The weave and capsize of the bicycle at 3 and 6 m/s: the exact equations are those linearized anew"""
     found = eomgen.linearize(MODELS / "whipple_bicycle.toml")
-    for v, roots in zip((3.0, 6.0), roots_over(found.small, "v", (3.0, 6.0)), strict=True):
+    for v, roots in zip((3.0, 6.0), found.small.roots_over("v", (3.0, 6.0)), strict=True):
         anew = eomgen.linearize(MODELS / "whipple_bicycle.toml", parameters={"v": v})
         assert np.allclose(np.poly(roots), np.poly(anew.spectrum.eigenvalues), rtol=1e-9)
 
@@ -124,7 +124,7 @@ def test_a_parameter_takes_those_with_it_that_are_expressions_of_it():
     text = (MODELS / "two_mass_oscillator.toml").read_text()
     lines = ['k2 = "k1/2"' if line.startswith("k2 =") else line for line in text.splitlines()]
     model = eomgen.loads("\n".join(lines))
-    (roots,) = roots_over(eomgen.linearize(model).small, "k1", (7.0,))
+    (roots,) = eomgen.linearize(model).small.roots_over("k1", (7.0,))
     both = eomgen.linearize(eomgen.loads(text), parameters={"k1": 7.0, "k2": 3.5})
     assert np.allclose(np.poly(roots), np.poly(both.spectrum.eigenvalues))
 

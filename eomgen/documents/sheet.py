@@ -10,7 +10,7 @@ from eomgen.documents.document import notation_of
 from eomgen.documents.latex import number_latex
 from eomgen.documents.motion_steps import COORDINATES, data_tables, start_shown, unit_per
 from eomgen.documents.statements import Code, Law, Meaning, Piece, Prose, Statement, Step, Table, prose, unit_text
-from eomgen.model import STATEMENT, AtRest, Coordinate, Model, Output
+from eomgen.model import STATEMENT, Coordinate, Model, Output
 from eomgen.symbolic.expression import Graph
 
 ROOM = 6  # cm to write the answer of one output in
@@ -76,7 +76,7 @@ def _of_output(model: Model, name: str, output: Output) -> Iterator[Piece]:
     if output.value.calls:  # a formula without one may be an answer
         yield ": "
         yield Code(output.value.text)
-    if isinstance(output.at, AtRest):
+    if output.rests:
         yield " at equilibrium"
     elif output.at is not None:
         yield " at "

@@ -23,7 +23,7 @@ from eomgen.identification.proof_of_groups import certify_regressor
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies import SystemFriction
 from eomgen.mechanics.kinematics import ContactMode, SystemInertia
-from eomgen.model import Model, ModelOrPath, UniformField
+from eomgen.model import Model, ModelOrPath
 from eomgen.pipeline import derive
 from eomgen.proof import Certificate
 from eomgen.symbolic.expression import (
@@ -231,7 +231,7 @@ def _rest(system: System) -> ScalarRow:
     size = len(system.symbols.u)
     total: list[Scalar] = [0] * size
     for force in loads.applied:
-        if not any(isinstance(load, UniformField) for load in force.loads):
+        if not force.is_field:
             total = [x + y for x, y in zip(total, loads.force_row(force), strict=True)]
     for link in motion.links:
         for k, effort in enumerate(() if link.joint is None else link.joint.efforts()):

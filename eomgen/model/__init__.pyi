@@ -236,9 +236,6 @@ from eomgen.model.parts import Parameter as Parameter
 
 # A state of first order: a current, a pressure, a temperature, an integral, z' = `rate`
 from eomgen.model.parts import StateVariable as StateVariable
-
-# Massless two-force members between hinges: nodes and members `n1-n2`
-from eomgen.model.parts import Truss as Truss
 from eomgen.model.quantities import Typed as Typed
 
 # factor * pi^pi_power, in units of SI

@@ -29,6 +29,10 @@ class PlacedPiece:
     piece: Any
     mass: MassProperties
 
+    def pose(self, value: ValueOf) -> Pose:
+        """Pose of its frame in the body."""
+        return pose_of(self.piece, value)
+
     @property
     def sign(self) -> int:
         """-1 for a hole, which removes material; 1 for anything else."""

@@ -365,6 +365,16 @@ class Output(Part):
     digits: Annotated[int, CountRule(1, 15)] | None = None
 
     @property
+    def rests(self) -> bool:
+        """True if it is requested in equilibrium."""
+        return isinstance(self.at, AtRest)
+
+    @property
+    def condition(self) -> WrittenEquation | None:
+        """The equation that is first met at its instant; None without one, and in equilibrium."""
+        return self.at if isinstance(self.at, WrittenEquation) else None
+
+    @property
     def of_every_event(self) -> bool:
         """True if all values are requested, one at each event of a run."""
         return self.event == EVERY

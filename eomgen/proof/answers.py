@@ -22,7 +22,7 @@ from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.instant import KinematicState, Quantities
 from eomgen.mechanics.linearization import Modes
 from eomgen.mechanics.start import Start
-from eomgen.model import FUNCTIONS, AtRest, Model, Output, OutputSource, WrittenEquation
+from eomgen.model import FUNCTIONS, Model, Output, OutputSource
 from eomgen.proof.at_a_state import NumericState, moving_states, off_by, place_of, read_back
 from eomgen.proof.certificate import certify, certify_standing
 from eomgen.proof.check import Certificate, Check, Tally, differing
@@ -33,8 +33,8 @@ from eomgen.proof.runs import run_checks
 from eomgen.proof.small_motions import small_motion_checks
 from eomgen.simulation import PhaseRun, Trajectory
 from eomgen.study import MotionFromStart, StateAtInstant, Study, kinematic_state
-from eomgen.symbolic.expression import Call, Fraction, Node, Scalar, depends_on, holds_op, symbols_of
-from eomgen.symbolic.numeric import PIECEWISE, NoValue, evaluate, fifty_digits, number_of, numbers_of, tolerances
+from eomgen.symbolic.expression import Call, Fraction, Node, Scalar, depends_on, symbols_of
+from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, has_pieces, number_of, numbers_of, tolerances
 
 WAY = 1.0  # s, of the motion along which functions of the configuration are checked
 ROWS = 21  # samples of it
@@ -259,11 +259,10 @@ class _Proof:
 
     def _moment(self, output: Output) -> StateAtInstant | None:
         """Instant at which an output is requested; None: the start."""
-        if output.at is None:
-            return None
-        if isinstance(output.at, AtRest):
+        if output.rests:
             return self.solver.at_rest
-        return self.solver.motions[output.from_ == "rest"].until(output.at, output.side)
+        at = output.condition
+        return None if at is None else self.solver.motions[output.from_ == "rest"].until(at, output.side)
 
     def _state(self, phase: Study, numbers: Mapping[Node, float]) -> NumericState:
         key = id(phase), tuple(numbers.values())
@@ -308,13 +307,13 @@ class _Proof:
         tally = Tally("a run in time leads to the requested instants", "integrated from the start")
         rest = Tally("at rest all forces balance", "equations of motion with u = 0, a = 0, 50 digits")
         requested = {
-            (output.at.text, output.from_): output
+            (output.condition.text, output.from_): output
             for output, _ in self.requested.values()
-            if output.at is not None and not isinstance(output.at, AtRest)
+            if output.condition is not None
         }
         for (text, _), output in requested.items():
             tally.add(text, partial(self._on_the_way, output))
-        resting = [name for name, (output, _) in self.requested.items() if isinstance(output.at, AtRest)]
+        resting = [name for name, (output, _) in self.requested.items() if output.rests]
         if resting:
             rest.add("the equilibrium", self._balanced)
         return iter((*tally.checks(), *rest.checks()))
@@ -330,7 +329,7 @@ class _Proof:
             raise RunFailed("the instant is not known in numbers", fix="give every parameter a value in [parameters]")
         if t == 0:
             return ""
-        if wrong := _by_coincidence(moment, output.at):
+        if wrong := _by_coincidence(moment, output):
             return wrong
         run = motion.run(t)
         symbols = motion.phase.system.symbols
@@ -344,8 +343,8 @@ class _Proof:
 
     def _too_late(self, motion: MotionFromStart, output: Output, run: Trajectory, t: float) -> str:
         """Message if the difference of the sides of the condition changes its sign before the instant; ""."""
-        phase, condition = motion.phase, output.at
-        assert condition is not None and not isinstance(condition, AtRest)
+        phase, condition = motion.phase, output.condition
+        assert condition is not None
         difference, system = phase.difference(condition), phase.system
         function = RightHandSide.of(Program.of((difference,), system.symbols, inputs=system.inputs), "numpy")
         with np.errstate(all="ignore"):
@@ -363,7 +362,7 @@ class _Proof:
                 "the equilibrium is not known in numbers", fix="give every parameter a value in [parameters]"
             )
         state = self._state(moment.phase, moment.numbers)
-        return _left_at_rest(state) or _by_coincidence(moment, None)
+        return _left_at_rest(state) or _by_coincidence(moment)
 
     # -- on the way --------------------------------------------------------------------------------
 
@@ -379,7 +378,7 @@ class _Proof:
     def _way(motion: MotionFromStart) -> Trajectory:
         """Run of the motion, longer where its equations consist of several pieces."""
         with suppress(RunFailed):
-            if any(holds_op(x, *PIECEWISE) for x in (*motion.phase.equations.forcing, motion.phase.equations.V)):
+            if any(map(has_pieces, (*motion.phase.equations.forcing, motion.phase.equations.V))):
                 return motion.run(LONG_WAY)  # at its own steps: a stiff floor is touched for milliseconds
         return motion.run(WAY, ROWS)
 
@@ -412,14 +411,14 @@ def _left_at_rest(state: NumericState) -> str:
     return f"{where} is left with {left:.1e} of its terms" if left > tolerances.COMPUTED else ""
 
 
-def _by_coincidence(moment: StateAtInstant, condition: WrittenEquation | AtRest | None) -> str:
+def _by_coincidence(moment: StateAtInstant, output: Output | None = None) -> str:
     """Message if a state in closed form is right at the parameters' own values by coincidence only; "".
 
     At slightly different parameters constraints must be satisfied, an equilibrium must stay one, and the condition of
     an instant must hold.
 
     Args:
-        condition: the condition of the instant; None: an equilibrium.
+        output: by whose condition the instant is; None: an equilibrium.
     """
     system = moment.phase.system
     symbols, model, rng = system.symbols, system.scope.model, Random(4)
@@ -441,10 +440,10 @@ def _by_coincidence(moment: StateAtInstant, condition: WrittenEquation | AtRest 
     gaps = [row.gap for row in system.constraints.rows if row.gap is not None and not row.identical]
     if any(abs(state.number(gap)) > tolerances.COMPUTED * (1 + max(map(abs, numbers.values()))) for gap in gaps):
         return "its closed form holds by coincidence: near these parameters the constraints are not satisfied"
+    condition = None if output is None else output.condition
     if condition is None:
         left = _left_at_rest(state)
         return f"its closed form holds by coincidence: near these parameters {left}" if left else ""
-    assert not isinstance(condition, AtRest)
     sides = [state.number(moment.phase.of_state(x)) for x in (condition.left, condition.right)]
     wrong = differing(*sides)
     return f"its closed form holds by coincidence: near these parameters {wrong}" if wrong else ""
@@ -479,11 +478,11 @@ def wrong_way(motion: MotionFromStart, output: Output, moment: StateAtInstant) -
     Raises:
         DerivationError: nothing of the motion can be checked.
     """
-    assert output.at is not None and not isinstance(output.at, AtRest) and motion.models is not None
+    assert output.condition is not None and motion.models is not None
     t = moment.numbers.get(moment.phase.system.symbols.t, math.nan)
     if t == 0:
         return ""
-    runs = motion.runs_to(output.at)
+    runs = motion.runs_to(output.condition)
     found = Certificate(run_checks(PhaseRun.joined(motion.models, runs), motion.models, motion.stepping))
     if found.ok is None:
         raise DerivationError(
@@ -510,8 +509,8 @@ def _apart(x: float, y: float) -> bool:
 
 def _met_before(runs: Sequence[PhaseRun], output: Output) -> str:
     """Message if left - right changes its sign within a phase, at the integrator's steps; ""."""
-    condition = output.at
-    assert condition is not None and not isinstance(condition, AtRest)
+    condition = output.condition
+    assert condition is not None
     for run in runs:
         phase = run.phase
         scalar = Study(phase.system).difference(condition)

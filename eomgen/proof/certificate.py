@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from eomgen.errors import DerivationError, MissingValues
+from eomgen.errors import DerivationError, ModelError
 from eomgen.mechanics.dynamics import EquationsOfMotion
 from eomgen.mechanics.free_bodies import SystemFriction
 from eomgen.mechanics.start import Start
@@ -107,7 +107,7 @@ def certify_reactions(
         symbols, begun = equations.symbols, Start.of(equations.system).values
         numbers = {symbols.t: 0.0, **{x: begun[x.name] for x in symbols.x}}
         start = NumericState(equations, equations.system.scope.known_exactly, numbers)
-    except (MissingValues, DerivationError):
+    except (ModelError, DerivationError):
         return found
     return found + reaction_numbers(start, texts, values)
 

@@ -28,7 +28,6 @@ from eomgen.model import (
     PushAt,
     PushOfMass,
     PushOnCoordinate,
-    UniformField,
 )
 from eomgen.proof.declared_threads import StretchedRope
 from eomgen.proof.in_numbers import (
@@ -43,7 +42,7 @@ from eomgen.proof.in_numbers import (
     pushes_of,
     way_through,
 )
-from eomgen.symbolic.expression import Fraction, Pose, Scalar, State, Twist, Vector, is_zero
+from eomgen.symbolic.expression import Fraction, Scalar, State, Vector, is_zero
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 
 # -------- declared work ---------------------------------------------------------------------------------------
@@ -72,7 +71,7 @@ def acting_otherwise(system: System, state: State) -> str:
     """
     proof = _Declared(system, state)
     for applied in system.loads.applied:
-        if any(isinstance(load, UniformField) for load in applied.loads):
+        if applied.is_field:
             continue
         due = proof.pushes(system.scope.model.forces[applied.name].acts)
         if body := pushed_otherwise(pushes_of(system.motion, state, applied.loads), due, _size(due)):
@@ -388,13 +387,15 @@ def _joint_motion(system: System, state: State, link: BodyLink, variable: int) -
     if sum(_turns(link, j) for j in range(len(link.S))) > 1:
         raise NoValue("a joint that turns about several axes")
     home, here = link.joint.pose((0,) * len(link.S), system.scope.value), link.relative
-    parent = Pose() if link.parent < 0 else system.motion.links[link.parent].pose
-    carried = (Twist() if link.parent < 0 else system.motion.links[link.parent].twist).at(link.local.p)
     turning = _turns(link, variable)
     column = link.S[variable][0 if turning else 1]
     n, Q = here.R @ column, here.R @ home.R.T
     own = link.twist.w if turning else link.twist.v + link.twist.w.cross(link.point)
-    against = link.pose.R @ own - parent.R @ (carried.w if turning else carried.v)
+    against = link.pose.R @ own
+    if link.parent >= 0:
+        parent = system.motion.links[link.parent]
+        carried = parent.twist.at(link.local.p)
+        against = against - parent.pose.R @ (carried.w if turning else carried.v)
     requested = (
         n @ Vector((Q[2][1] - Q[1][2], Q[0][2] - Q[2][0], Q[1][0] - Q[0][1])),
         Q[0][0] + Q[1][1] + Q[2][2] - 1,

@@ -22,7 +22,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.errors import DerivationError, MissingValues, ModelError
+from eomgen.errors import DerivationError, ModelError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Closure, Constraints, Freedom, Row
 from eomgen.mechanics.dynamics import EquationsOfMotion, System
@@ -34,7 +34,6 @@ from eomgen.proof.check import first_wrong
 from eomgen.proof.in_numbers import STEP, declared_state_rates
 from eomgen.symbolic.expression import Node, Scalar, State, Vector, jacobian, symbols_of
 from eomgen.symbolic.numeric import (
-    FLOAT,
     NoValue,
     evaluate,
     fifty_digits,
@@ -68,7 +67,7 @@ def _freer(model: Model, modes: ContactModes, found: Freedom) -> str:
         if not constraints.closing or len(constraints.motion.scope.symbols.u) > MOST:
             return ""
         return _by_differences(constraints, Closure(constraints).generic(29), found)
-    except (DerivationError, MissingValues, ModelError, NoValue, ZeroDivisionError):  # the count has said so
+    except (DerivationError, ModelError, NoValue, ZeroDivisionError):  # the count has said so
         return ""
 
 
@@ -275,14 +274,14 @@ def pulled_at_start(system: System) -> str:
     """
     try:
         start = Start.of(system).values
-    except (DerivationError, MissingValues, ModelError) as error:
+    except (DerivationError, ModelError) as error:
         raise NoValue(str(error).splitlines()[0]) from None
     symbols = system.symbols
     known = system.scope.model.exact_parameters()
     state = {node: float(known[name]) for name, node in symbols.parameters.items() if name in known}
     state |= {node: start.get(node.name, 0.0) for node in symbols.x} | {symbols.t: 0.0}
     for applied in springs_of_the_start(system):
-        if applied.potential is not None and evaluate((applied.potential,), state, FLOAT)[0] > tolerances.SOLVED:
+        if applied.potential is not None and evaluate((applied.potential,), state)[0] > tolerances.SOLVED:
             return f"forces.{applied.name} is not slack where the motion starts"
     return ""
 

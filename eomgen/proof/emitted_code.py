@@ -27,7 +27,7 @@ from eomgen.mechanics.dynamics import EquationsOfMotion, System, exact_accelerat
 from eomgen.proof.check import Check, attempted, checked, unchecked
 from eomgen.proof.free_bodies import moved_otherwise
 from eomgen.proof.in_numbers import declared_state_rates, instant_of, with_inputs
-from eomgen.symbolic.expression import Node, Scalar, ScalarRow, State, order
+from eomgen.symbolic.expression import Node, Scalar, State, order
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, floats_of, of_one_length, tolerances
 
 WORK = 60_000  # graph nodes evaluated with 50 digits in one check, some 0.2 s; one state always
@@ -379,7 +379,7 @@ class Judged:
     values: Mapping[str, Scalar]
     actuators: Sequence[str] = ()
     slopes: Callable[..., tuple[np.ndarray, np.ndarray]] | None = None
-    parameters: ScalarRow | None = None
+    parameters: Sequence[Scalar] | None = None
 
     def check(self, written: Written, start: Sequence[TriedState]) -> Check:
         """Check of the written function at the start and at the states of its test vectors."""
@@ -436,7 +436,7 @@ class Judged:
         how = "the linearized equations solved in numbers"
         return at_states(name, how, at, wrong, cost=len(order(self.motion.scalars)))
 
-    def _regressor(self, code: Code, at: Iterable[TriedState], name: str, pi: ScalarRow) -> Check:
+    def _regressor(self, code: Code, at: Iterable[TriedState], name: str, pi: Sequence[Scalar]) -> Check:
         """Check of every entry against the symbols, and of Y pi + y0 as forces in the equations without inputs."""
         e = self.motion.equations
         still, size, entries = dict.fromkeys(e.symbols.inputs, 0.0), len(e.symbols.u), tuple(self.values.values())

@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.errors import DerivationError, MissingValues, ModelError
+from eomgen.errors import DerivationError, ModelError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Closure
 from eomgen.mechanics.dynamics import System
@@ -198,7 +198,7 @@ def _motions_elsewhere(free: System, state: State, regular: float) -> float:
             there = state | Closure(free.constraints).generic(1)
             held = np.vstack([Closure(free.constraints).rows_at(there), *_unit_lengths(free, there)])
             free.found[ELSEWHERE] = _allowed(held, regular).shape[1]
-        except (DerivationError, MissingValues, ModelError, NoValue):
+        except (DerivationError, ModelError, NoValue):
             free.found[ELSEWHERE] = np.inf
     found: float = free.found[ELSEWHERE]
     return found

@@ -17,7 +17,7 @@ from eomgen.mechanics.kinematics import SystemInertia
 from eomgen.proof.check import Check, checked, unchecked
 from eomgen.proof.states import States
 from eomgen.symbolic.exact import Equality, equal_at_real_states, equal_in_field
-from eomgen.symbolic.expression import Node, Scalar, ScalarRow, gradient, inner, substituted, tangent
+from eomgen.symbolic.expression import Node, Scalar, gradient, inner, substituted, tangent
 
 Pairs = list[tuple[Scalar, Scalar]]
 
@@ -118,7 +118,7 @@ def derivation(equations: EquationsOfMotion, derived: EquationsOfMotion) -> Clai
     return Claim("M, c and Q of the derivation are those of the equations", pairs, labels)
 
 
-def _paired(own: Iterable[ScalarRow], other: Iterable[ScalarRow]) -> Pairs:
+def _paired(own: Iterable[Sequence[Scalar]], other: Iterable[Sequence[Scalar]]) -> Pairs:
     return [pair for rows in zip(own, other, strict=True) for pair in zip(*rows, strict=True)]
 
 

@@ -18,7 +18,7 @@ from eomgen.mechanics.dynamics import EquationsOfMotion
 from eomgen.model import Joint, Model
 from eomgen.proof.check import first_wrong
 from eomgen.proof.posed_model import PosedModel, poses_differ, quaternion_names
-from eomgen.symbolic.numeric import FLOAT, evaluate, tolerances
+from eomgen.symbolic.numeric import evaluate, tolerances
 
 FREE, BALL = 0, 1  # the numbers of MuJoCo, of joints
 JOINT_WRAP, SITE_WRAP = 1, 3  # of the path of a tendon
@@ -237,7 +237,7 @@ class _Compiled:
         n, at = len(order), [self.speeds.index(name) for name in order]
         due = self.data.qfrc_actuator + self.data.qfrc_passive - self.data.qfrc_bias
         known = {
-            **self.posed.values_of(s),
+            **self.posed.values_in(equations.system.motion),
             **{x: rates[x.name] for x in s.u},
             **dict.fromkeys(s.inputs.values(), push or 0.0),
         }
@@ -245,7 +245,7 @@ class _Compiled:
             *(x for row in equations.M for x in row),
             *(q - c for q, c in zip(equations.Q, equations.c, strict=True)),
         ]
-        found = np.array([float(x) for x in evaluate(scalars, known, FLOAT)])
+        found = np.array([float(x) for x in evaluate(scalars, known)])
         M, forces = found[: n * n].reshape(n, n), found[n * n :]
         full, due = full[np.ix_(at, at)], due[at]
         for k, name in enumerate(order):

@@ -24,7 +24,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.instant import FIXED, BodyMotion, Kind, KinematicState, Quantities, composition_of
 from eomgen.mechanics.kinematics import JointEffort, SystemInertia
-from eomgen.model import FUNCTIONS, GeneralizedForce, PointForce
+from eomgen.model import FUNCTIONS, PointForce
 from eomgen.proof.at_a_state import NumericState
 from eomgen.proof.check import Check, checked, differing, unchecked
 from eomgen.proof.declared_loads import acting
@@ -543,7 +543,7 @@ class NearbyStates:
         """Power: F . v + tau . w of every body, and s' times the effort of every joint."""
         system = self.state.equations.system
         loads, known = system.loads, dict(self._way.now)
-        if any(isinstance(load, GeneralizedForce) for force in loads.applied for load in force.loads):
+        if any(force.is_along_coordinate for force in loads.applied):
             raise NoValue("something acts at no place")
         placed = [load for force in loads.applied for load in force.loads]
         if system.motion.moves(tuple(x for load in placed if isinstance(load, PointForce) for x in load.place[1])):

@@ -21,11 +21,11 @@ import numpy as np
 
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics import Motion, Scope
-from eomgen.model import Cell, MassProperties, PlacedPiece, Shape, pose_of
+from eomgen.model import Cell, MassProperties, Shape
 from eomgen.proof.check import Check, attempted, checked, first_wrong, unchecked
 from eomgen.proof.declared_numbers import other_functions
-from eomgen.symbolic.expression import Expression, Node, Pose, Scalar, Vector
-from eomgen.symbolic.numeric import FLOAT, NoValue, evaluate, fifty_digits, floats_of, tolerances
+from eomgen.symbolic.expression import Expression, Node, Scalar, Vector
+from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, floats_of, tolerances
 
 NODES = (32, 32, 16)  # of Gauss and Legendre in each direction, for lines, surfaces and volumes
 QUADRATURE = "quadrature"
@@ -216,7 +216,7 @@ class _Proof:
     values: Mapping[Node, float]
 
     def numbers(self, scalars: Sequence[Scalar]) -> list[float]:
-        found = [float(x) for x in evaluate(tuple(scalars), self.values, FLOAT)]
+        found = [float(x) for x in evaluate(tuple(scalars), self.values)]
         if all(map(math.isfinite, found)):
             return found
         try:  # 1e300^2 * 0
@@ -266,7 +266,7 @@ class _Proof:
         if body not in self._known:
             part = self.motion.scope.model.bodies[body]
             if part.parts is not None:
-                self._known[body] = np.sum([self._piece(p) for p in self.motion.scope.made_of(body).pieces], axis=0)
+                self._known[body] = np.sum(list(self._pieces(body)), axis=0)
             elif part.shape is not None:
                 (m,) = self.numbers((self.motion.scope.mass_properties(body).m,))
                 self._known[body] = m * filled(part.shape, self.value)[1]
@@ -278,15 +278,16 @@ class _Proof:
     def _known(self) -> dict[str, np.ndarray]:
         return {}
 
-    def _piece(self, placed: PlacedPiece) -> np.ndarray:
-        X = self._matrix(pose_of(placed.piece, self.motion.scope.value))
-        (m,) = self.numbers((placed.mass.m,))
-        found: np.ndarray = placed.sign * m * (X @ filled(placed.piece.shape, self.value)[1] @ X.T)
-        return found
+    def _pieces(self, body: str) -> Iterator[np.ndarray]:
+        for placed in self.motion.scope.made_of(body).pieces:
+            pose = placed.pose(self.motion.scope.value)
+            X = self._matrix(pose.R, pose.p)
+            (m,) = self.numbers((placed.mass.m,))
+            yield placed.sign * m * (X @ filled(placed.piece.shape, self.value)[1] @ X.T)
 
-    def _matrix(self, pose: Pose) -> np.ndarray:
+    def _matrix(self, R: Sequence[Vector], p: Vector) -> np.ndarray:
         """X of [r; 1]"""
-        flat = self.numbers((*(x for row in pose.R for x in row), *pose.p))
+        flat = self.numbers((*(x for row in R for x in row), *p))
         return np.block(
             [[np.reshape(flat[:9], (3, 3)), np.array(flat[9:])[:, None]], [np.zeros((1, 3)), np.ones((1, 1))]]
         )
@@ -314,7 +315,8 @@ class _Proof:
         shift[:3, 3] = -np.array(point)
         S = np.zeros((4, 4))
         for body in stated.bodies:
-            X = shift @ (self._matrix(self.motion.link(body).pose) if stated.in_ground else np.eye(4))
+            link = self.motion.link(body)
+            X = shift @ (self._matrix(link.pose.R, link.pose.p) if stated.in_ground else np.eye(4))
             S = S + X @ self.own(body) @ X.T
         return S
 

@@ -14,10 +14,9 @@ import numpy as np
 
 from eomgen.frozen import dataclass
 from eomgen.mechanics.linearization import NAME, SmallMotions
-from eomgen.model import rotation_of
 from eomgen.proof.degrees_of_freedom import Going, Nearby, Numbers50
 from eomgen.proof.in_numbers import STEP
-from eomgen.symbolic.expression import Matrix, Node, Vector
+from eomgen.symbolic.expression import Node, Vector
 from eomgen.symbolic.numeric import fifty_digits
 
 DigitColumn = Sequence[Any]
@@ -133,14 +132,10 @@ class Differences:
             standing = any(turn.standing for turn in mine.values())
             given |= dict(zip(four, _unit(_product(arm, e) if standing else _product(e, arm)), strict=True))
         for turn in {turn.four: turn for turn in self._spins.values()}.values():
-            v = Vector(step.get(label, 0) * h for label, own in self._spins.items() if own.four == turn.four)
-            w = self._axes(turn).T @ v
+            v = [step.get(label, 0) * h for label, own in self._spins.items() if own.four == turn.four]
+            w = _turned(_conjugate([here[e] for e in turn.four]), v)
             given |= {x: here[x] + d for x, d in zip(turn.speeds, w, strict=True)}
         return given
-
-    def _axes(self, turn: SmallTurn) -> Matrix:
-        """R of the reference."""
-        return rotation_of("quaternion", tuple(self.origin.state[e] for e in turn.four))
 
     def _speed(self, going: Going, label: Node) -> tuple[Any, Any]:
         """Speed and its rate; about fixed axes R_0 w, and R_0 (w_0 x w + w')."""
@@ -148,8 +143,8 @@ class Differences:
             return going.state[label], going.a[label]
         turn = self._spins[label]
         w, rate, before = (Vector(way[x] for x in turn.speeds) for way in (going.state, going.a, self.origin.state))
-        R = self._axes(turn)
-        return (R @ w)[turn.axis], (R @ (before.cross(w) + rate))[turn.axis]
+        e_0 = [self.origin.state[e] for e in turn.four]
+        return _turned(e_0, w)[turn.axis], _turned(e_0, before.cross(w) + rate)[turn.axis]
 
     def _read(self, late: Going, early: Going) -> Iterator[tuple[DigitColumn, DigitColumn]]:
         """Values of the printed coordinates, and their first and second time derivatives."""
@@ -237,6 +232,11 @@ def _product(a: DigitColumn, b: DigitColumn) -> list[Any]:
         a0 * b2 - a1 * b3 + a2 * b0 + a3 * b1,
         a0 * b3 + a1 * b2 - a2 * b1 + a3 * b0,
     ]
+
+
+def _turned(e: DigitColumn, v: Sequence[Any]) -> list[Any]:
+    """The vector e v e*, turned as the quaternion says."""
+    return _product(_product(e, [0, *v]), _conjugate(e))[1:]
 
 
 def _conjugate(e: DigitColumn) -> list[Any]:

@@ -46,8 +46,8 @@ from eomgen.model import (
 )
 from eomgen.proof.in_numbers import InNumbers, direction_at
 from eomgen.proof.states import refuse_open
-from eomgen.symbolic.expression import Matrix, Node, Scalar, State, Symbols, Vector
-from eomgen.symbolic.numeric import FLOAT, evaluate, fifty_digits, tolerances
+from eomgen.symbolic.expression import Matrix, Node, Scalar, State, Vector
+from eomgen.symbolic.numeric import evaluate, fifty_digits, tolerances
 
 FIRST, STEP = 0.3, 0.17  # values of the coordinates, one after the other
 REMARKED = ("link", "joint", "body")  # "link upper arm, from ...": name in the other file
@@ -68,11 +68,11 @@ class PosedModel:
 
     @property
     def known(self) -> Mapping[Node, float]:
-        return self.values_of(self.motion.scope.symbols)
+        return self.values_in(self.motion)
 
-    def values_of(self, symbols: Symbols) -> dict[Node, float]:
-        """Parameters, coordinates and the time as symbols of a graph, with their numbers."""
-        known = self.model.exact_parameters()
+    def values_in(self, motion: Motion) -> dict[Node, float]:
+        """Parameters, coordinates and the time as symbols of a motion of the model, with their numbers."""
+        known, symbols = self.model.exact_parameters(), motion.scope.symbols
         return {
             **{node: float(known[name]) for name, node in symbols.parameters.items() if name in known},
             **{node: self.values[node.name] for node in symbols.q},
@@ -80,7 +80,7 @@ class PosedModel:
         }
 
     def at(self, scalars: tuple[Scalar, ...]) -> np.ndarray:
-        return np.array([float(x) for x in evaluate(scalars, self.known, FLOAT)])
+        return np.array([float(x) for x in evaluate(scalars, self.known)])
 
     def number(self, expression: Any) -> float:
         """Value of a field of the model; 0 for a missing one."""

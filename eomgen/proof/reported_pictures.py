@@ -21,7 +21,7 @@ import numpy as np
 
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics import BodyLink, SystemScene
-from eomgen.model import Couple, Element, PointForce, PushAt, PushOfMass, Shape, TouchingRound, pose_of
+from eomgen.model import Couple, Element, PointForce, PushAt, PushOfMass, Shape, TouchingRound
 from eomgen.proof.at_a_state import NumericState
 from eomgen.proof.check import Check, Tally
 from eomgen.proof.declared_loads import placed_pushes
@@ -199,11 +199,11 @@ class _Shown(InNumbers):
         if part.parts is None:
             return [] if part.shape is None else [(part.shape, np.eye(3), np.zeros(3))]
         found = []
-        for piece in part.parts:
-            if not piece.hole:
-                pose = pose_of(piece, value)
+        for placed in self.system.scope.made_of(name).pieces:
+            if placed.sign > 0:
+                pose = placed.pose(value)
                 flat = [float(x) for x in self.at((*(x for row in pose.R for x in row), *pose.p))]
-                found.append((piece.shape, np.reshape(flat[:9], (3, 3)), np.array(flat[9:])))
+                found.append((placed.piece.shape, np.reshape(flat[:9], (3, 3)), np.array(flat[9:])))
         return found
 
     def _box(self, shapes: Sequence[tuple[Shape, np.ndarray, np.ndarray]]) -> Corners:

@@ -23,7 +23,7 @@ from eomgen.proof.at_a_state import balanced_least
 from eomgen.proof.check import Check, Tally, differing
 from eomgen.proof.declared_loads import declared_pushes
 from eomgen.symbolic.expression import LONGEST, Node, Scalar, State, parse, symbols_of
-from eomgen.symbolic.numeric import FLOAT, NoValue, evaluate, fifty_digits, tolerances
+from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 
 NAME, HOW = "reported section forces are those that were found", "heads and texts read back, random values"
 Reported = Scalar | str
@@ -113,7 +113,7 @@ class _Values:
             found = self._of_text(reported, x)
         elif type(reported) is Node:
             symbols = symbols_of((reported,))
-            found = evaluate((reported,), {s: self._symbol(s.name, x) for s in symbols}, FLOAT)[0]
+            found = evaluate((reported,), {s: self._symbol(s.name, x) for s in symbols})[0]
         else:
             found = float(reported)
         if not math.isfinite(found):
@@ -272,7 +272,7 @@ class _Works:
             return float(reported)
         known = {x: self.numbers.get(x, 1.0 if x.name.startswith("\u03b4") else R) for x in symbols_of((reported,))}
         known |= {x: R for x in known if x.name == requested}
-        return float(evaluate((reported,), known, FLOAT)[0])
+        return float(evaluate((reported,), known)[0])
 
     def _of_text(self, text: str) -> float:
         if len(text) > LONGEST:
@@ -287,7 +287,7 @@ class _Works:
         return float(expression.evaluate({**named, "pi": np.pi}))
 
     def vector(self, v: Sequence[Scalar]) -> np.ndarray:
-        return np.array([float(x) for x in evaluate(tuple(v), self.numbers, FLOAT)])
+        return np.array([float(x) for x in evaluate(tuple(v), self.numbers)])
 
     def factors(self, reaction: StaticReaction) -> dict[int, float]:
         """k_j of R = sum k_j rho_j."""

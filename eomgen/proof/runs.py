@@ -12,7 +12,7 @@ import numpy as np
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion
 from eomgen.mechanics.instant import Quantities
-from eomgen.model import Output, OutputSource, WrittenEquation, formula_at
+from eomgen.model import Output, OutputSource, formula_at
 from eomgen.proof.certificate import certify
 from eomgen.proof.check import Certificate, Check, Tally, differing, unchecked
 from eomgen.proof.contact_phases import bodies_stand_as_reported, changes_follow_impulses, contacts_do_as_assumed
@@ -151,7 +151,7 @@ class SamplesOfRun:
         """Checks of extremes, means, mean squares and values at events against the samples of the run alone."""
         tally = Tally("outputs of the whole run agree with its samples", "samples as they were integrated")
         for name, output in self.run.model.outputs.items():
-            if isinstance(output.at, WrittenEquation) and output.event is not None:
+            if output.condition is not None and output.event is not None:
                 tally.add(name, partial(self._events_against_samples, output))
             for call in self.run.functions_in(output) if WholeRun.answers(output) else ():
                 tally.add(str(call), partial(self._against_samples, call))
@@ -173,9 +173,9 @@ class SamplesOfRun:
             or Quantities.requested_by(output.value, OutputSource.SMALL_MOTIONS)
         ):
             return ""
-        if not isinstance(output.at, WrittenEquation):
+        if output.condition is None:
             return self._by_samples(output, reported) if output.at is None else ""
-        n, met = int(output.event or 1), self._met_by_samples(output.at)
+        n, met = int(output.event or 1), self._met_by_samples(output.condition.left - output.condition.right)
         if reported is None:
             if len(met) < n:
                 return ""
@@ -210,9 +210,9 @@ class SamplesOfRun:
         size = max(abs(found), self.run.duration, *(float(np.max(np.abs(y), initial=0.0)) for y in values))
         return "" if abs(reported - found) <= tolerances.CARRIED * size else f"{reported:.10g} for {found:.10g}"
 
-    def _met_by_samples(self, condition: WrittenEquation) -> list[tuple[float, float]]:
+    def _met_by_samples(self, difference: Expression) -> list[tuple[float, float]]:
         """Intervals between samples [s] in which the difference of the sides of a condition changes its sign."""
-        curves = self.run.sampled(condition.left - condition.right)
+        curves = self.run.sampled(difference)
         sure = tolerances.CARRIED * max(float(np.max(np.abs(y), initial=0.0)) for _, y in curves)
         found: list[tuple[float, float]] = []
         for t, y in curves:
@@ -283,9 +283,9 @@ class SamplesOfRun:
         Args:
             reported: value that is checked; None: that of the output itself.
         """
-        assert isinstance(output.at, WrittenEquation)
+        assert output.condition is not None
         found = self.run.of(output)
-        sides = self.run.sampled(output.at.left - output.at.right)
+        sides = self.run.sampled(output.condition.left - output.condition.right)
         curves = self.run.sampled(output.value)
         largest = [max(float(np.max(np.abs(y))) for _, y in each) for each in (sides, curves)]
         values = found.value if isinstance(found.value, tuple) else (found.value if reported is None else reported,)

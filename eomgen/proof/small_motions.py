@@ -31,7 +31,6 @@ from eomgen.proof.reported_small_motions import PrintedModes, linear_entries, sm
 from eomgen.symbolic.exact import Polynomial
 from eomgen.symbolic.expression import Node
 from eomgen.symbolic.numeric import (
-    FLOAT,
     NoValue,
     evaluate,
     fifty_digits,
@@ -521,7 +520,7 @@ class _Proof:
         leading = self.modes.polynomial.coefficients[-1:]
         try:
             ways = [{x: float(v) + k / STEPS * float(drawn[x] - v) for x, v in trial.items()} for k in range(STEPS + 1)]
-            sizes = [abs(float(evaluate(leading, way, FLOAT)[0])) for way in ways]
+            sizes = [abs(float(evaluate(leading, way)[0])) for way in ways]
         except (NoValue, ZeroDivisionError, OverflowError):
             return True
         return min(sizes) < MET * min(sizes[0], sizes[-1])

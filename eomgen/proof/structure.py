@@ -33,7 +33,7 @@ from eomgen.proof.masses import other_data
 from eomgen.proof.posed_model import apart, meetings_of
 from eomgen.proof.reported_sections import ReportedSections, ReportedWork, sections_reported, works_reported
 from eomgen.symbolic.expression import Node, Scalar, Vector, parse, symbols_of
-from eomgen.symbolic.numeric import FLOAT, evaluate, fifty_digits, tolerances
+from eomgen.symbolic.numeric import evaluate, fifty_digits, tolerances
 
 IN_NUMBERS = "floating point"
 MOST_PLANS = 4  # released structures whose blocks are looked at, evenly spread
@@ -192,7 +192,7 @@ class _Proof:
         return {node: float(x) for node, x in self.state.items()}
 
     def numbers(self, scalars: Sequence[Scalar]) -> np.ndarray:
-        return np.array([float(x) for x in evaluate(tuple(scalars), self.values, FLOAT)])
+        return np.array([float(x) for x in evaluate(tuple(scalars), self.values)])
 
     @cached_property
     def _balancing(self) -> tuple[np.ndarray, np.ndarray]:
@@ -260,7 +260,7 @@ class _Proof:
     def _value(self, piece: SectionPiece, kind: str, x: float) -> float:
         """Value at x of a section force as it is printed."""
         section = self.found.system.scope.graph.symbol("(x of a section)")
-        return float(evaluate((piece.value(kind, section),), {**self.values, section: x}, FLOAT)[0])
+        return float(evaluate((piece.value(kind, section),), {**self.values, section: x})[0])
 
     def wrong_extremes(self, forces: SectionForces) -> str:
         """Message if V is not 0 at an extreme, M is not the stated one, or an extreme is missing; ""."""

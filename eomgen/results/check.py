@@ -8,13 +8,9 @@ from typing import Any
 
 from eomgen.documents import Document, Lines, listed, plain_document
 from eomgen.errors import Problem
-from eomgen.mechanics.constraints import Freedom, VelocityRow
-from eomgen.mechanics.dynamics import reported_of_nodes
-from eomgen.mechanics.free_bodies import Structure
-from eomgen.mechanics.start import AssemblyMode, Branches
-from eomgen.model import Model, Truss
+from eomgen.model import Model
 from eomgen.proof import branches_otherwise, counted_otherwise, lines_otherwise
-from eomgen.study import Checked, LoopStart, checked_model, model_to_study
+from eomgen.study import Checked, checked_model, model_to_study
 from eomgen.symbolic.print import to_text
 
 
@@ -22,8 +18,8 @@ def check_document(model: Model) -> Document:
     """The model's parts and its degrees of freedom, by rank and by the counting formula."""
     model = model_to_study(model)
     found = checked_model(model)
-    lines = [*_declared_lines(found), *_freedom_lines(model, found.freedom), *_start_lines(found), *_rest_lines(found)]
-    reported = {**_declared(found), **_counted(found), **_started(found.start)}
+    lines = [*_declared_lines(found), *_freedom_lines(found), *_start_lines(found), *_rest_lines(found)]
+    reported = {**_declared(found), **_counted(found), **_started(found)}
     wrong = (
         counted_otherwise(model, found.modes, found.freedom, found.structure)
         or _closed_otherwise(found)
@@ -45,12 +41,13 @@ def _declared_lines(found: Checked) -> list[str]:
     count = len(model.warnings) + len(found.cautions)
     reported = "no problems found" if not count else f"{count} warning{'s' if count > 1 else ''}"
     lines = [f"{model.name}: {reported}", f"space: {model.space}", f"bodies: {listed(model.bodies)}"]
-    lines += [f"trusses: {listed(_truss(*each) for each in model.trusses.items())}"] if model.trusses else []
+    sizes = (f"{name} ({len(each.nodes)} nodes, {len(each.members)} members)" for name, each in model.trusses.items())
+    lines += [f"trusses: {listed(sizes)}"] if model.trusses else []
     lines.append(f"coordinates: {listed(q + remark.get(q, '') for q in model.coordinates)}")
     lines += [f"unknowns: {listed(model.unknowns)}"] if model.unknowns else []
     lines += [f"parameters without a value: {listed(missing)}"] if missing else []
     units = model.inferred_units
-    lines += [f"node: {words}" for words in reported_of_nodes(model)]
+    lines += [f"node: {words}" for words in found.nodes]
     return [*lines, f"units inferred: {listed(f'{name} [{unit}]' for name, unit in units.items())}"] if units else lines
 
 
@@ -60,25 +57,23 @@ def _start_lines(found: Checked) -> list[str]:
     lines = [f"start: {start.refused}"] if start.refused else []
     lines += [f"start {begun.words}"] if begun is not None and begun.words else []
     lines += [f"the start is {begun.fork.words}"] if begun is not None and begun.fork is not None else []
-    return [*lines, *_branch_lines(found.model, start.branches)]
+    return [*lines, *_branch_lines(found)]
 
 
 def _rest_lines(found: Checked) -> list[str]:
     """Lines about a mechanism or structure without coordinates, open contacts, and parts that are not derived yet."""
     mobility, structure, waiting = found.mobility, found.structure, found.unbuilt
     lines = [] if mobility is None else [f"mobility: {mobility}, the bodies free to move but for their constraints"]
-    lines += [] if structure is None else [f"structure: {_held(structure)}"]
+    lines += [] if structure is None else [f"structure: {_held(found)}"]
     lines += [f"open at the start: {listed(found.open)}"] if found.open else []
     lines += [f"not derived yet: {listed(f'{kind} ({where})' for where, kind in waiting)}"] if waiting else []
     return lines
 
 
-def _truss(name: str, truss: Truss) -> str:
-    return f"{name} ({len(truss.nodes)} nodes, {len(truss.members)} members)"
-
-
-def _held(structure: Structure) -> str:
+def _held(found: Checked) -> str:
     """Stability and statical determinacy of a structure, by the rank of its supports and the forces to be found."""
+    structure = found.structure
+    assert structure is not None
     unknowns = f", held by {listed(p.name for p in structure.unknowns)} too" if structure.unknowns else ""
     extra = structure.indeterminacy
     surplus = "" if not extra else f"{extra} reaction{'s' if extra > 1 else ''} more than independent ones"
@@ -119,12 +114,12 @@ def _counted(found: Checked) -> dict[str, Any]:
         "redundant": [
             {"tie": r.constraint, "row": r.number, "follows_from": list(r.others)} for r in freedom.redundant
         ],
-        "velocity_rows": _velocity_rows(freedom),
+        "velocity_rows": _velocity_rows(found),
     }
 
 
-def _started(start: LoopStart) -> dict[str, Any]:
-    begun, branches = start.begun, start.branches
+def _started(found: Checked) -> dict[str, Any]:
+    start, begun, branches = found.start, found.start.begun, found.start.branches
     changes = () if begun is None else begun.changes
     ways = () if branches is None else (branches.here, *branches.others)
     return {
@@ -143,8 +138,8 @@ def _started(start: LoopStart) -> dict[str, Any]:
     }
 
 
-def _velocity_rows(freedom: Freedom) -> list[dict[str, Any]]:
-    rows = () if freedom.integrability is None else freedom.integrability.rows
+def _velocity_rows(found: Checked) -> list[dict[str, Any]]:
+    rows = () if found.freedom.integrability is None else found.freedom.integrability.rows
     return [
         {
             "tie": r.constraint,
@@ -161,12 +156,13 @@ def _velocity_rows(freedom: Freedom) -> list[dict[str, Any]]:
 MOST_REPORTED = 5  # other ways
 
 
-def _freedom_lines(model: Model, freedom: Freedom) -> list[str]:
+def _freedom_lines(found: Checked) -> list[str]:
     """Lines that state the degrees of freedom by rank and by formula, and the reasons for both."""
+    freedom = found.freedom
     if freedom.by_rank is None:
         lines = [f"degrees of freedom: not counted yet ({freedom.not_counted})"]
-        return lines if freedom.by_formula is None else [*lines, _formula_line(model, freedom)]
-    lines = [f"degrees of freedom: {freedom.by_rank} by rank", _formula_line(model, freedom)]
+        return lines if freedom.by_formula is None else [*lines, _formula_line(found)]
+    lines = [f"degrees of freedom: {freedom.by_rank} by rank", _formula_line(found)]
     lines += (
         [f"constraints that close: {_constraints(freedom.closing_rows, freedom.identical)}"] if freedom.closing else []
     )
@@ -175,7 +171,7 @@ def _freedom_lines(model: Model, freedom: Freedom) -> list[str]:
         if freedom.identical
         else []
     )
-    lines += _velocity_lines(freedom)
+    lines += _velocity_lines(found)
     for row in freedom.redundant:
         alone = "the joints" if row.by_joints else "its other rows"
         others = f", it follows from {listed(row.others) if row.others else alone}"
@@ -204,78 +200,65 @@ def _numbered(numbers: Sequence[int]) -> str:
     return f"rows {', '.join(before)} and {last}" if before else f"row {last}"
 
 
-def _velocity_lines(freedom: Freedom) -> list[str]:
+def _velocity_lines(checked: Checked) -> list[str]:
     """Lines about velocity constraints: the holonomic ones with their integrals, and the degrees of freedom in
     position."""
-    found = freedom.integrability
+    found = checked.freedom.integrability
     if found is None:
         return []
-    free = [row for row in found.rows if not row.integrable]
+    free = [(row.constraint, row.number) for row in found.rows if not row.integrable]
     lines = [f"not integrable (nonholonomic): {listed(_rows(free))}"] if free else []
-    kept: dict[str, list[VelocityRow]] = {}
+    kept: dict[str, list[tuple[str, int]]] = {}
     for row in found.rows:
         if row.integrable:
-            kept.setdefault("" if row.integral is None else f": {to_text(row.integral)} = 0", []).append(row)
+            integral = "" if row.integral is None else f": {to_text(row.integral)} = 0"
+            kept.setdefault(integral, []).append((row.constraint, row.number))
     lines += [f"integrable (holonomic): {each}{integral}" for integral, rows in kept.items() for each in _rows(rows)]
-    more = found.positions != freedom.by_rank
+    more = found.positions != checked.freedom.by_rank
     return [*lines, f"degrees of freedom in position: {found.positions}"] if more else lines
 
 
-def _rows(rows: Sequence[VelocityRow]) -> list[str]:
+def _rows(rows: Sequence[tuple[str, int]]) -> list[str]:
     """row 1 of constraint 'edge', rows 2 and 3 of constraint 'wheel'"""
-    named = _by_constraint([(row.constraint, row.number) for row in rows])
-    return [f"{_numbered(numbers)} of constraint '{constraint}'" for constraint, numbers in named.items()]
+    named = _by_constraint(rows).items()
+    return [f"{_numbered(numbers)} of constraint '{constraint}'" for constraint, numbers in named]
 
 
-def _formula_line(model: Model, freedom: Freedom) -> str:
-    placed = [name for name, body in model.bodies.items() if body.joint is None or not body.joint.carries_reaction]
+def _formula_line(found: Checked) -> str:
+    freedom, bodies = found.freedom, found.model.bodies
+    placed = [name for name, body in bodies.items() if body.joint is None or not body.joint.carries_reaction]
     remark = f"; {listed(placed)}: placed, counted as free" if placed else ""
     return f"count by formula: {freedom.by_formula} = {freedom.formula or '0'}{remark}"
 
 
-def _branch_lines(model: Model, branches: Branches | None) -> list[str]:
+def _branch_lines(found: Checked) -> list[str]:
     """The way at the start, the others, and the meaning of (+), (-), left and right."""
+    branches = found.start.branches
     if branches is None:
         return []
-    sided = _sided(branches)
-    lines = [f"loops at the start: {_reported(branches.here, sided)}"]
-    if not branches.others:
+    here, *others = (each.in_words(branches.sided) for each in (branches.here, *branches.others[:MOST_REPORTED]))
+    lines = [f"loops at the start: {here}"]
+    if not others:
         return lines
-    others, more = (
-        [_reported(each, sided) for each in branches.others[:MOST_REPORTED]],
-        len(branches.others) - MOST_REPORTED,
-    )
+    more = len(branches.others) - MOST_REPORTED
     others += [f"and {more} more ways"] if more > 0 else []
     kept = f" with the same {listed(branches.kept)}" if branches.kept else ""
     also = [f"they also close{kept} at {others[0]}"] if len(others) == 1 else [f"they also close{kept} at"]
-    return [*lines, *also, *(f"  {each}" for each in others if len(others) > 1), *_keys(model, branches, sided)]
+    return [*lines, *also, *(f"  {each}" for each in others if len(others) > 1), *_keys(found)]
 
 
-def _sided(branches: Branches) -> tuple[str, ...]:
-    """The pins that do not lie on the same side in all ways."""
-    here = {side.constraint: side.left for side in branches.here.sides}
-    others = [{side.constraint: side.left for side in each.sides} for each in branches.others]
-    return tuple(
-        constraint for constraint, left in here.items() if any(each.get(constraint, left) != left for each in others)
-    )
-
-
-def _reported(branch: AssemblyMode, sided: tuple[str, ...]) -> str:
-    """beta = 0.48, gamma = 1.57 (-), 'B' on the left"""
-    sides = [f"'{s.constraint}' on the {'left' if s.left else 'right'}" for s in branch.sides if s.constraint in sided]
-    return ", ".join([str(branch), *sides])
-
-
-def _keys(model: Model, branches: Branches, sided: tuple[str, ...]) -> list[str]:
+def _keys(found: Checked) -> list[str]:
+    branches = found.start.branches
+    assert branches is not None
     here, first = branches.here, branches.others[0]
     sign = f"(+) and (-): det d phi/d({listed(here.values)}), which is 0 in a dead centre, where two ways meet"
     lines = [sign] if here.sign else []
     lines += [
         f"left and right of '{s.constraint}': of the line from the hinge of '{s.first}' to that of '{s.second}'"
         for s in here.sides
-        if s.constraint in sided
+        if s.constraint in branches.sided
     ]
-    near = ", ".join(f"{name} = {{ near = {_number(model, name, x)} }}" for name, x in first.values.items())
+    near = ", ".join(f"{name} = {{ near = {_number(found.model, name, x)} }}" for name, x in first.values.items())
     return [f"  {line}" for line in (*lines, f"another way is taken from a start near it: {near}")]
 
 

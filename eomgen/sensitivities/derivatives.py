@@ -395,7 +395,7 @@ class _Asking:
                 "it is of a whole run, or of one instant of it: no derivative is sought of that",
                 fix="request last(...), or sweep over the parameter",
             )
-        rest = isinstance(output.at, AtRest)
+        rest = output.rests
         if output.at is not None and not rest:
             raise DerivationError("it is requested at an instant", fix="give `time`: derivatives along the run")
         if Quantities.requested_by(output.value, OutputSource.SMALL_MOTIONS):

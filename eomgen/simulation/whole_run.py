@@ -175,20 +175,21 @@ class WholeRun:
 
     def _at_events(self, output: Output) -> RunValue:
         """The value at the n-th event, or at every one."""
-        if not isinstance(output.at, WrittenEquation) or output.from_ is not None:
+        condition = output.condition
+        if condition is None or output.from_ is not None:
             raise DerivationError("it is no value of a run from the start", fix="`eomgen solve` answers it")
         if Quantities.requested_by(output.value, OutputSource.OF_A_RUN) or Quantities.requested_by(
             output.value, OutputSource.SMALL_MOTIONS
         ):
             raise DerivationError(f"'{output.value.text}' belongs to no instant", fix="leave out `at`")
-        events = self.events(output.at)
+        events = self.events(condition)
         if output.of_every_event:
             found = [self._at(output, *event) for event in events]
             return RunValue(tuple(found), tuple(t for _, t in events))
         n = 1 if output.event is None else int(output.event)
         if len(events) < n:
             count = f"is met {len(events)} times" if events else "is not met"
-            return RunValue(None, (), f"'{output.at.text}' {count} in the run")
+            return RunValue(None, (), f"'{condition.text}' {count} in the run")
         return _valued(self._at(output, *events[n - 1]), (events[n - 1][1],))
 
     def _at(self, output: Output, k: int, t: float) -> float:

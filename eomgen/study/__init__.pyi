@@ -3,9 +3,6 @@
 # Results of checking a model without mistakes
 from eomgen.study.checked import Checked as Checked
 
-# Closure of the loops at the start
-from eomgen.study.checked import LoopStart as LoopStart
-
 # Checks a model: degrees of freedom, redundancy, closure of loops, cautions
 from eomgen.study.checked import checked_model as checked_model
 
@@ -20,6 +17,9 @@ from eomgen.study.cut_bodies import cut_state as cut_state
 
 # The entry of a derivation in the cache; None where this package is not made of files
 from eomgen.study.kept_derivations import cached_derivation as cached_derivation
+
+# The centrodes of a body in numbers
+from eomgen.study.kinematics import CentrodeCurves as CentrodeCurves
 
 # The motion of a model at an instant, however the model gives it
 from eomgen.study.kinematics import kinematic_state as kinematic_state

@@ -9,7 +9,7 @@ from functools import cached_property
 from eomgen.errors import DerivationError, MissingValues, ModelError, Problem
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Freedom
-from eomgen.mechanics.dynamics import System, WellPosed, assembled_by_recursion
+from eomgen.mechanics.dynamics import System, WellPosed, assembled_by_recursion, reported_of_nodes
 from eomgen.mechanics.free_bodies import Structure
 from eomgen.mechanics.instant import InstantKinematics
 from eomgen.mechanics.kinematics import ContactModes, Motion, Scope, SystemScene
@@ -58,6 +58,11 @@ class Checked:
         """The parameters without a value."""
         known = self.model.exact_parameters()
         return [name for name in self.model.parameters if name not in known]
+
+    @property
+    def nodes(self) -> tuple[str, ...]:
+        """What is assumed of massless nodes, in words."""
+        return reported_of_nodes(self.model)
 
     @property
     def driven(self) -> list[str]:

@@ -6,18 +6,34 @@ and given equations. A model with coordinates is taken at its start, or where a 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from math import isfinite
+from math import isfinite, pi
 
+import numpy as np
+
+from eomgen.codegen import Program, RightHandSide
 from eomgen.errors import DerivationError, ModelError, UsageError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Rank
-from eomgen.mechanics.instant import InstantKinematics, KinematicState
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.instant import Centrodes, InstantKinematics, KinematicState
 from eomgen.mechanics.start import Start
 from eomgen.model import Given, Model, WrittenEquation, equation_in
 from eomgen.study.motion import MotionFromStart
 from eomgen.study.study import Study, exact_numbers
-from eomgen.symbolic.expression import Expression, Fraction, Node, State, depends_on, is_zero, substituted
+from eomgen.symbolic.expression import (
+    Expression,
+    Fraction,
+    Node,
+    Scalar,
+    State,
+    depends_on,
+    is_zero,
+    order,
+    substituted,
+)
+from eomgen.symbolic.numeric import evaluate, tolerances
 from eomgen.symbolic.print import text_size
 
 LONG = 600  # characters of a state, and of accelerations, from which numbers stand in their place
@@ -176,3 +192,110 @@ def _with_accelerations(phase: Study, moving: State, numbers: Mapping[Node, floa
         return {}, False
     inputs = phase.complete(moving, Expression.number(0))
     return {**inputs, **dict(zip(symbols.a, map(Fraction, found), strict=True))}, True
+
+
+# -- centrodes in numbers -----------------------------------------------------------------------------
+# Centrodes, an instant -> the curve in the ground, and the body's own that rolls on it, as it lies then.
+
+
+STEPS = 240  # to each side
+
+
+@dataclass(frozen=True)
+class CentrodeCurves:
+    """The centrodes of a body in the plane, places n x 2.
+
+    Args:
+        fixed, moving: in the ground.
+        now: the centre of rotation at the instant, 2.
+        size: of the mechanism [m].
+    """
+
+    body: str
+    fixed: np.ndarray
+    moving: np.ndarray
+    now: np.ndarray
+    size: float
+
+    @staticmethod
+    def of(system: System, centrodes: Centrodes, values: State) -> CentrodeCurves:
+        """Both curves, followed to either side of an instant.
+
+        Args:
+            values: numbers of t, the coordinates, speeds and parameters then.
+        """
+        way, body = _configurations(system, centrodes.body, values), centrodes.body
+        moving = _in_ground(system, body, _places(centrodes.moving, way), values)
+        now = _places(centrodes.fixed, [values])[0]
+        return CentrodeCurves(body, _places(centrodes.fixed, way), moving, now, _size(system, values))
+
+
+def _places(place: tuple[Scalar, ...], way: list[State]) -> np.ndarray:
+    """A place in the plane at each of the configurations."""
+    return np.array([evaluate(place[:2], values) for values in way], dtype=float)
+
+
+def _in_ground(system: System, body: str, places: np.ndarray, values: State) -> np.ndarray:
+    """Places of a body, where they are in the ground at the instant."""
+    pose = system.motion.link(body).pose
+    turn = np.array(evaluate([x for row in pose.R[:2] for x in row[:2]], values), dtype=float).reshape(2, 2)
+    moved: np.ndarray = places @ turn.T + np.array(evaluate(pose.p[:2], values), dtype=float)
+    return moved
+
+
+def _size(system: System, values: State) -> float:
+    """The size of the mechanism: the largest distance of a point from its body's origin."""
+    points = [x for body in system.motion.points.values() for place in body.values() for x in place]
+    found = [abs(x) for x in evaluate(points, values) if isfinite(x)]
+    return max(found, default=0.0) or 1.0
+
+
+def _configurations(system: System, body: str, values: State) -> list[State]:
+    """Configurations before and after the instant, of the one freedom, or in time."""
+    symbols, scope = system.symbols, system.scope
+    if symbols.u:
+        rates, length = (0, *(row[0] for row in scope.N)), _reach(system, values)
+    else:
+        spin = abs(float(evaluate((system.motion.field(body).w[2],), values)[0]))
+        rates, length = (1, *scope.rates), pi / spin if spin > tolerances.COMPUTED else 1.0
+    slope = _slope(system, rates, values)
+    before, after = (_followed(system, slope, values, sign * length / STEPS) for sign in (-1, 1))
+    return [*reversed(before), values, *after]
+
+
+def _reach(system: System, values: State) -> float:
+    """Range to each side over which the one degree of freedom is followed: half a turn, or twice the size."""
+    symbols = system.symbols
+    leading = next(q for q, rate in zip(symbols.q, system.scope.rates, strict=True) if rate is symbols.u[0])
+    poses = [x for link in system.motion.links for row in link.pose.R for x in row]
+    turns = any(node.op in ("sin", "cos") and depends_on(node, (leading,)) for node in order(poses))
+    return pi if turns else 2 * _size(system, values)
+
+
+PlaneSlope = Callable[[np.ndarray], np.ndarray]
+
+
+def _slope(system: System, rates: tuple[Scalar, ...], values: State) -> PlaneSlope:
+    """The rates as functions of t and the coordinates."""
+    symbols = system.symbols
+    function = RightHandSide.of(Program.of(rates, symbols), "numpy")
+    p = np.array([values[node] for node in symbols.parameters.values()])
+    speeds = np.ones(len(symbols.u))
+    return lambda x: np.asarray(function(float(x[0]), np.append(x[1:], speeds), p), dtype=float)
+
+
+def _followed(system: System, slope: PlaneSlope, values: State, step: float) -> list[State]:
+    """Configurations one after the other, by Runge and Kutta's method, as far as there are any."""
+    moving = (system.symbols.t, *system.symbols.q)
+    x = np.array([values[node] for node in moving], dtype=float)
+    found: list[State] = []
+    with np.errstate(all="ignore"):
+        for _ in range(STEPS):
+            k1 = slope(x)
+            k2 = slope(x + step / 2 * k1)
+            k3 = slope(x + step / 2 * k2)
+            x = x + step / 6 * (k1 + 2 * k2 + 2 * k3 + slope(x + step * k3))
+            if not np.all(np.isfinite(x)):
+                break
+            found.append({**values, **dict(zip(moving, map(float, x), strict=True))})
+    return found

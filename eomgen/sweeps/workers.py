@@ -29,7 +29,7 @@ from typing import Any
 from eomgen.errors import EomgenError, RunFailed, UsageError, WriteFailed
 from eomgen.frozen import dataclass
 from eomgen.mechanics.instant import Quantities
-from eomgen.model import AtRest, Model, Output, OutputSource, requested_of, with_values
+from eomgen.model import Model, Output, OutputSource, requested_of, with_values
 from eomgen.pipeline import simulator
 from eomgen.questions import solve
 from eomgen.resources import PatienceEnded
@@ -353,11 +353,8 @@ class SweepKernel:
 
 def is_without_motion(output: Output) -> bool:
     """True if `solve` answers it: at rest, from another start, of the linearized system."""
-    return (
-        isinstance(output.at, AtRest)
-        or output.from_ is not None
-        or Quantities.requested_by(output.value, OutputSource.SMALL_MOTIONS)
-    )
+    small = OutputSource.SMALL_MOTIONS
+    return output.rests or output.from_ is not None or Quantities.requested_by(output.value, small)
 
 
 def _sentence(error: Exception) -> str:

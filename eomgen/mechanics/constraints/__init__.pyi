@@ -35,9 +35,6 @@ from eomgen.mechanics.constraints.rank import Freedom as Freedom
 # Which constraint rows are independent: at a generic configuration in which the constraints hold
 from eomgen.mechanics.constraints.rank import Rank as Rank
 
-# A row of velocities alone
-from eomgen.mechanics.constraints.rank import VelocityRow as VelocityRow
-
 # a sliding velocity that is none [m/s]
 from eomgen.mechanics.constraints.rows import STILL as STILL
 

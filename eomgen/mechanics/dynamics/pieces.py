@@ -22,14 +22,12 @@ from eomgen.symbolic.expression import (
     State,
     depends_on,
     function,
-    holds_op,
     is_zero,
     linear_terms,
     order,
     substituted,
 )
 from eomgen.symbolic.numeric import (
-    PIECEWISE,
     Choices,
     NoValue,
     Switch,
@@ -39,6 +37,7 @@ from eomgen.symbolic.numeric import (
     compared_sides,
     evaluate,
     fifty_digits,
+    has_pieces,
     piecewise_nodes,
     switches_of,
     tolerances,
@@ -211,7 +210,7 @@ def moving_symbols(system: System) -> frozenset[Node]:
 
 def division_of(equations: EquationsOfMotion, scalars: Sequence[Scalar]) -> Division | None:
     """The pieces of the scalars; None where they have none."""
-    if not any(holds_op(x, *PIECEWISE) for x in scalars):
+    if not any(map(has_pieces, scalars)):
         return None
     moving = moving_symbols(equations.system)
     nodes = piecewise_nodes(scalars, moving)

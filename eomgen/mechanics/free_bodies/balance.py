@@ -151,7 +151,7 @@ def _balance(system: System, sizes: Mapping[str, Scalar]) -> Balance:
 
 def _refuse_placeless_forces(system: System) -> None:
     for force in system.loads.applied:
-        if force.placeless or any(not hasattr(load, "place") and hasattr(load, "coordinate") for load in force.loads):
+        if force.placeless or force.is_along_coordinate:
             what = f"the force '{force.name}' acts on coordinates and at no place: reactions do not follow"
             raise DerivationError(what, f"forces.{force.name}", "give it as forces and couples on bodies")
         pushes = [load for load in force.loads if isinstance(load, PointForce)]

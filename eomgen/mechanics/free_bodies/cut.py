@@ -18,7 +18,7 @@ from eomgen.mechanics.free_bodies.balance import Balance
 from eomgen.mechanics.free_bodies.names_of_reactions import is_named_alone
 from eomgen.mechanics.free_bodies.wrenches import Axes, Component, Effect, effects_at_joint, rotors_of
 from eomgen.mechanics.kinematics import BodyLink, JointEffort, pushed_along
-from eomgen.model import Couple, Element, PointForce, UniformField
+from eomgen.model import Couple, Element, PointForce
 from eomgen.symbolic.expression import Matrix, Scalar, Vector, is_zero, substituted
 
 
@@ -70,7 +70,7 @@ class CutForce:
 
 
 def _weights(system: System) -> Iterator[CutForce]:
-    fields = (f.name for f in system.loads.applied if any(isinstance(load, UniformField) for load in f.loads))
+    fields = (f.name for f in system.loads.applied if f.is_field)
     name, axes = " + ".join(fields), Axes(system.motion)
     for load in system.loads.weights:
         yield from _given(axes, axes.effects_of(load), name, ForceKind.WEIGHT)

@@ -41,7 +41,6 @@ from eomgen.symbolic.expression import (
     ScalarRow,
     function,
     gradient,
-    holds_op,
     inner,
     is_zero,
     over,
@@ -49,7 +48,7 @@ from eomgen.symbolic.expression import (
     sqrt,
     substituted,
 )
-from eomgen.symbolic.numeric import PIECEWISE, tolerances
+from eomgen.symbolic.numeric import has_pieces, tolerances
 
 # -------- friction --------------------------------------------------------------------------------------------
 # Equations of motion -> the same with friction: the contacts' own reactions solved together with the accelerations.
@@ -105,7 +104,7 @@ def where_in_pieces(
 
     None where they have no pieces, or not all are known: the equations of the system say where each is.
     """
-    if not any(holds_op(x, *PIECEWISE) for x in scalars):
+    if not any(map(has_pieces, scalars)):
         return None
     key = (system.symbols.u, system.constraints.J, system.constraints.sigma)
     known = system.scope.graph.found(where_in_pieces)

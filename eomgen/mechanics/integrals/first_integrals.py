@@ -20,9 +20,8 @@ from eomgen.mechanics.dynamics import (
 from eomgen.mechanics.kinematics import GROUND, SystemInertia, integral_from_zero
 from eomgen.model import Couple, GeneralizedForce, Load, PointForce
 from eomgen.symbolic.exact import equal_at_random_states, exact_state, readable, real_values
-from eomgen.symbolic.expression import Node, Scalar, Vector, depends_on, gradient, holds_op, inner, is_zero, over
+from eomgen.symbolic.expression import Node, Scalar, Vector, depends_on, gradient, inner, is_zero, over
 from eomgen.symbolic.numeric import (
-    PIECEWISE,
     PRIME_FIELD,
     Choices,
     NoMeaning,
@@ -32,6 +31,7 @@ from eomgen.symbolic.numeric import (
     evaluate,
     fifty_digits,
     follows,
+    has_pieces,
     tolerances,
 )
 from eomgen.symbolic.print import text_size
@@ -227,7 +227,7 @@ def _of_time_alone(
     equations: EquationsOfMotion, rates: Sequence[Scalar], others: Sequence[Node]
 ) -> list[tuple[Scalar | None, Extent]]:
     """Each rate where it depends on none of the others, else None; in which pieces."""
-    whole = [None if holds_op(rate, *PIECEWISE) and depends_on(rate, others) else rate for rate in rates]
+    whole = [None if has_pieces(rate) and depends_on(rate, others) else rate for rate in rates]
     smooth = iter(_alone_at_all(equations.system, [rate for rate in whole if rate is not None], others))
     return [
         _in_pieces(equations, rate, others) if same is None else (next(smooth), Extent(True))

@@ -19,14 +19,13 @@ from eomgen.symbolic.expression import (
     depends_on,
     derivative,
     function,
-    holds_op,
     is_zero,
     linear_terms,
     over,
     sqrt,
     substituted,
 )
-from eomgen.symbolic.numeric import PIECEWISE
+from eomgen.symbolic.numeric import has_pieces
 
 HIGHEST_DEGREE = 6  # of a polynomial on the right side
 
@@ -117,7 +116,7 @@ def _of_term(A: Scalar, B: Scalar, g: Scalar, of: MotionConstants) -> Scalar | N
     max(0, t - t0) has no second derivative in any piece, and is no polynomial: at t0 a vibration begins.
     """
     t = of.t
-    if holds_op(g, *PIECEWISE) and depends_on(g, (t,)):
+    if has_pieces(g) and depends_on(g, (t,)):
         return None
     second = derivative(derivative(g, t), t)
     mu = 0 if is_zero(second) else of.simple(over(second, g))

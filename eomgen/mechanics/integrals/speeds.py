@@ -31,7 +31,7 @@ from eomgen.symbolic.expression import (
     over,
     substituted,
 )
-from eomgen.symbolic.numeric import FLOAT, PIECEWISE, Work, evaluate, fifty_digits, tolerances
+from eomgen.symbolic.numeric import FLOAT, Work, evaluate, fifty_digits, has_pieces, tolerances
 
 # -------- speeds ----------------------------------------------------------------------------------------------
 # First integrals, start -> every speed as a function of the coordinates, without time.
@@ -214,7 +214,7 @@ class FreeSpeed:
 
     def _has_pieces_of_speed(self, F: Scalar) -> bool:
         """True if F has a piecewise function of the free speed: max(0, -y')."""
-        return any(depends_on(x, (self._speed,)) for x in order((F,)) if x.op in PIECEWISE)
+        return has_pieces(F, (self._speed,))
 
     def _in_sense(self, F: Scalar) -> Scalar:
         """F with sign(k u_s) replaced by what it is in this sense, for every k that has a sign of its own."""

@@ -49,6 +49,16 @@ class Applied:
     placeless: bool
     spread: tuple[SpreadLoad, ...] = ()
 
+    @property
+    def is_field(self) -> bool:
+        """True if it is a field of acceleration, which acts on every mass."""
+        return any(isinstance(load, UniformField) for load in self.loads)
+
+    @property
+    def is_along_coordinate(self) -> bool:
+        """True if it acts along a coordinate, and at no place."""
+        return any(isinstance(load, GeneralizedForce) for load in self.loads)
+
 
 @dataclass(frozen=True)
 class JointEffort:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.errors import DerivationError, EomgenError, MissingValues, NotYet
+from eomgen.errors import DerivationError, EomgenError, MissingValues, NotYet, RunFailed
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Assembly
 from eomgen.mechanics.dynamics import System, Valueless
@@ -125,6 +125,31 @@ class SmallMotions:
         n, w = len(e.coordinates), len(e.inputs)
         below = np.linalg.solve(floats(e.M), np.array(e.B, dtype=float).reshape(len(e.speeds), w))
         return np.vstack([np.array(e.D, dtype=float).reshape(n, w), below])
+
+    def roots_over(self, parameter: str, values: Sequence[float]) -> np.ndarray:
+        """The eigenvalues at each value of a parameter, a row each; nan where the reference has none.
+
+        Raises:
+            RunFailed: the equations are only known at the values of the parameters.
+        """
+        rows = []
+        for value in values:
+            try:
+                rows.append(np.sort_complex(np.linalg.eigvals(self._matrix_at(parameter, value))))
+            except (NoValue, ZeroDivisionError, np.linalg.LinAlgError):
+                rows.append(np.full(len(self.state_matrix), np.nan, dtype=complex))
+        return np.array(rows)
+
+    def _matrix_at(self, parameter: str, value: float) -> np.ndarray:
+        """A at another value of a parameter, by the exact equations."""
+        exact, scope = self.exact, self.reference.system.scope
+        if exact is None:
+            what = "the small motions are known in numbers only, at the values of the parameters"
+            raise RunFailed(f"{what}: there are no roots over '{parameter}'", fix="take a place in closed form")
+        known = scope.model.exact_parameters({parameter: value})  # and those that are expressions of it
+        state = {scope.symbols.parameters[name]: float(x) for name, x in known.items()}
+        numbers: dict[str, Any] = {name: [evaluate(row, state) for row in getattr(exact, name)] for name in "MCKBFE"}
+        return replace(exact, **numbers).state_matrix
 
     @staticmethod
     def of(

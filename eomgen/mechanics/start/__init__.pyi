@@ -1,8 +1,5 @@
 """Door of the folder: what other folders may import from `eomgen.mechanics.start`."""
 
-# One way to close the loops
-from eomgen.mechanics.start.assembly_modes import AssemblyMode as AssemblyMode
-
 # The ways to close the loops of a model at its start
 from eomgen.mechanics.start.assembly_modes import Branches as Branches
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from random import Random
 from typing import Any
 
@@ -49,6 +49,13 @@ class AssemblyMode:
     def __str__(self) -> str:
         return self.words + {1: " (+)", -1: " (-)", 0: ""}[self.sign]
 
+    def in_words(self, sided: Collection[str]) -> str:
+        """beta = 0.48, gamma = 1.57 (-), 'B' on the left; with the sides of these pins."""
+        sides = [
+            f"'{s.constraint}' on the {'left' if s.left else 'right'}" for s in self.sides if s.constraint in sided
+        ]
+        return ", ".join([str(self), *sides])
+
 
 @dataclass(frozen=True)
 class Branches:
@@ -62,6 +69,13 @@ class Branches:
     kept: tuple[str, ...]
     here: AssemblyMode
     others: tuple[AssemblyMode, ...]
+
+    @property
+    def sided(self) -> tuple[str, ...]:
+        """The pins that do not lie on the same side in all ways."""
+        here = {side.constraint: side.left for side in self.here.sides}
+        others = [{side.constraint: side.left for side in each.sides} for each in self.others]
+        return tuple(name for name, left in here.items() if any(each.get(name, left) != left for each in others))
 
     @staticmethod
     def of(system: System, start: Mapping[str, float]) -> Branches | None:

@@ -16,7 +16,7 @@ from eomgen.results.at_rest.section_steps import LETTERS, Sections, sections_in_
 from eomgen.results.at_rest.structure import StaticScene, draw_structure, label_of
 from eomgen.scene import pushes_reported
 from eomgen.symbolic.expression import Node, Scalar
-from eomgen.symbolic.numeric import FLOAT, evaluate, tolerances
+from eomgen.symbolic.numeric import numbers_of, tolerances
 from eomgen.symbolic.print import Setter
 
 # -------- picture ---------------------------------------------------------------------------------------------
@@ -357,4 +357,4 @@ def _labels(panel: Any, points: Iterable[tuple[Any, ...]]) -> None:
 
 
 def _numbers(scalars: Sequence[Scalar], values: Mapping[Node, float]) -> list[float]:
-    return [float(x) for x in evaluate(tuple(scalars), values, FLOAT)]
+    return numbers_of(scalars, values)

@@ -34,7 +34,6 @@ from eomgen.documents import (
 from eomgen.mechanics.free_bodies import (
     Reactions,
     RigidBlock,
-    Structure,
     VelocityPlan,
     numeral,
 )
@@ -142,7 +141,7 @@ def structure_step(statics: StaticReactions) -> Step:
         Formula((_law(formula), number)),
         prose(
             f"By rank: the bodies have {count(len(structure.columns), 'velocity', 'velocities')}, of which the "
-            f"reactions forbid {structure.rank}. {_free(structure)}"
+            f"reactions forbid {structure.rank}. {_free(statics)}"
             + (
                 ": the structure is statically determinate."
                 if not structure.indeterminacy
@@ -155,8 +154,9 @@ def structure_step(statics: StaticReactions) -> Step:
     return Step("structure", "Structure", tuple(statements))
 
 
-def _free(structure: Structure) -> str:
+def _free(statics: StaticReactions) -> str:
     """Sentence on what can move: nothing, straight bodies about their lines, or motions in which no load does work."""
+    structure = statics.structure
     idle = dict.fromkeys(body for plan in structure.loose for body in plan.moving)
     if not idle:
         return "Nothing can move"

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import fields, replace
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,10 +11,10 @@ import numpy as np
 from eomgen.documents import Picture, Sketch, artist_of, draw_model, limits, mathtext, notation_of
 from eomgen.errors import RunFailed
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.linearization import LinearEquations, Mode, Modes, SmallMotions
+from eomgen.mechanics.linearization import Mode, Modes, SmallMotions
 from eomgen.model import Range
 from eomgen.symbolic.expression import Node
-from eomgen.symbolic.numeric import FLOAT, NoValue, evaluate, tolerances
+from eomgen.symbolic.numeric import tolerances
 
 # -------- picture ---------------------------------------------------------------------------------------------
 # Modes -> a picture: the system swung out in each mode over its reference, or the shapes as bars.
@@ -113,8 +112,6 @@ FINE = 600  # frequencies of a curve
 DASH = 8.0  # of each of several curves that are one [points]
 NARROWEST = 0.15  # of the plane of roots, its shorter side: less is rounding, of roots on an axis
 
-MatrixOf = Callable[[float], np.ndarray]
-
 
 def bode_picture(small: SmallMotions) -> Picture:
     """|W| and its phase over the frequency, of every coordinate and input.
@@ -195,7 +192,8 @@ def locus_picture(small: SmallMotions, over: Range) -> Picture:
     Raises:
         RunFailed: parameters have no values; the equations are only known at those.
     """
-    roots = roots_over(small, over.name, over.values)
+    _refuse_unvalued(small)
+    roots = small.roots_over(over.name, over.values)
     named = np.array(over.values) / over.size
 
     notation = notation_of(small.reference.system.scope.model)
@@ -223,46 +221,6 @@ def _widen(panel: Any) -> None:
     x, y = (max(0.0, 0.5 * (least - side)) for side in (right - left, high - low))
     panel.set_xlim(left - x, right + x)
     panel.set_ylim(low - y, high + y)
-
-
-def roots_over(small: SmallMotions, parameter: str, values: Sequence[float]) -> np.ndarray:
-    """The eigenvalues at each value of a parameter, a row each; nan where the reference has none.
-
-    Raises:
-        RunFailed: as `locus_picture`.
-    """
-    _refuse_unvalued(small)
-    matrix = _matrix_over(small, parameter)
-    rows = []
-    for value in values:
-        try:
-            rows.append(np.sort_complex(np.linalg.eigvals(matrix(value))))
-        except (NoValue, ZeroDivisionError, np.linalg.LinAlgError):
-            rows.append(np.full(len(small.state_matrix), np.nan, dtype=complex))
-    return np.array(rows)
-
-
-def _matrix_over(small: SmallMotions, parameter: str) -> MatrixOf:
-    """A as a function of the parameter, by the exact equations."""
-    exact = small.exact
-    if exact is None:
-        what = "the small motions are known in numbers only, at the values of the parameters"
-        raise RunFailed(f"{what}: there are no roots over '{parameter}'", fix="take a place in closed form")
-    scope = small.reference.system.scope
-    names = [f.name for f in fields(LinearEquations) if f.name in ("M", "C", "K", "B", "F", "E")]
-    shapes = {name: [len(row) for row in getattr(exact, name)] for name in names}
-    flat = [x for name in names for row in getattr(exact, name) for x in row]
-
-    def at(value: float) -> np.ndarray:
-        known = scope.model.exact_parameters({parameter: value})  # and those that are expressions of it
-        state = {scope.symbols.parameters[name]: float(x) for name, x in known.items()}
-        numbers = iter(evaluate(flat, state, FLOAT))
-        found: dict[str, Any] = {
-            name: [[float(next(numbers)) for _ in range(width)] for width in shapes[name]] for name in names
-        }
-        return replace(exact, **found).state_matrix
-
-    return at
 
 
 def _refuse_unvalued(small: SmallMotions) -> None:

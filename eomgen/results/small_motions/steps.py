@@ -45,7 +45,7 @@ from eomgen.mechanics.state import Entries
 from eomgen.proof import PrintedModes
 from eomgen.symbolic.exact import Polynomial
 from eomgen.symbolic.expression import Node, Scalar, depends_on, is_zero, over, symbols_of
-from eomgen.symbolic.numeric import FLOAT, evaluate, numbers_of, tolerances
+from eomgen.symbolic.numeric import numbers_of, tolerances
 from eomgen.symbolic.print import text_size, to_text
 
 SECOND_ORDER = Law("M*q'' + C*q' + K*q = B*w", r"M \ddot{q} + C \dot{q} + K q = B w")
@@ -475,7 +475,7 @@ def _named(statements: list[Any]) -> Iterator[tuple[str, Side]]:
 
 def _parameter_number(value: Any) -> float:
     """The value of a parameter: an angle in degrees is an expression of pi."""
-    return float(evaluate((value,), {}, FLOAT)[0] if isinstance(value, Node) else value)
+    return numbers_of((value,))[0] if isinstance(value, Node) else float(value)
 
 
 def _value(side: Any, values: Mapping[str, float]) -> float:
@@ -489,7 +489,7 @@ def _value(side: Any, values: Mapping[str, float]) -> float:
     symbols = symbols_of((side,))
     if any(x.name not in values for x in symbols):
         return math.nan
-    return float(evaluate((side,), {x: values[x.name] for x in symbols}, FLOAT)[0])
+    return numbers_of((side,), {x: values[x.name] for x in symbols})[0]
 
 
 # -------- reference step --------------------------------------------------------------------------------------

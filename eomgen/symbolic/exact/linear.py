@@ -39,7 +39,7 @@ from eomgen.symbolic.expression import (
     over,
     symbols_of,
 )
-from eomgen.symbolic.numeric import PIECEWISE, lengths_of, tolerances
+from eomgen.symbolic.numeric import has_pieces, lengths_of, tolerances
 
 TOGETHER = 4  # unknowns of one set of normal equations
 PIECES_TRIED = 8  # states at which something vanishes in every piece: it may stand in any of them
@@ -162,7 +162,7 @@ def _number_first(a: Scalar) -> int:
 def in_every_piece(a: Scalar) -> bool:
     """True if what vanishes at a state of one piece is zero in all pieces: s + |s| is not, nor s + sqrt(s^2)."""
     with suppress(DerivationError):  # without values at real states
-        return not holds_op(a, *PIECEWISE, "sqrt") or equal_at_real_states([(a, 0)], states=PIECES_TRIED).equal
+        return not (has_pieces(a) or holds_op(a, "sqrt")) or equal_at_real_states([(a, 0)], states=PIECES_TRIED).equal
     return True
 
 

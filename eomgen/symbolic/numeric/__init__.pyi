@@ -81,7 +81,6 @@ from eomgen.symbolic.numeric.isolation import JUMPS as JUMPS
 
 # The roots of as many equations as unknowns in the box from `low` to `high`; None where they have jumps
 from eomgen.symbolic.numeric.isolation import isolated as isolated
-from eomgen.symbolic.numeric.pieces import PIECEWISE as PIECEWISE
 from eomgen.symbolic.numeric.pieces import Choices as Choices
 
 # A quantity, and the values of it at which something changes its form
@@ -95,6 +94,9 @@ from eomgen.symbolic.numeric.pieces import choices_at as choices_at
 
 # The two sides that are compared where x chooses; of samples their argument and 0
 from eomgen.symbolic.numeric.pieces import compared_sides as compared_sides
+
+# True if a formula consists of several pieces
+from eomgen.symbolic.numeric.pieces import has_pieces as has_pieces
 
 # The nodes whose form changes with something that moves, in the order of evaluation
 from eomgen.symbolic.numeric.pieces import piecewise_nodes as piecewise_nodes

@@ -63,19 +63,19 @@ class Arithmetic:
     quickly: Callable[[Sequence[Any], Sequence[_Step], Sequence[int]], list[Any] | None] | None = None
 
 
-def evaluate(outputs: Sequence[Scalar], values: Mapping[Node, Any], arithmetic: Arithmetic) -> list[Any]:
+def evaluate(outputs: Sequence[Scalar], values: Mapping[Node, Any], arithmetic: Arithmetic | None = None) -> list[Any]:
     """The outputs' values.
 
     Args:
         outputs: scalars of one graph, exact numbers among them.
         values: a value for every symbol in the outputs; any other node may be given too, and is then not computed.
-        arithmetic: FLOAT, RATIONAL, PRIME_FIELD or fifty_digits().
+        arithmetic: FLOAT (None), RATIONAL, PRIME_FIELD or fifty_digits().
     Raises:
         DerivationError: a symbol without a value; all are named.
         NoValue: outside the domain (floats give nan instead).
     """
     check_patience()
-    outputs = tuple(outputs)
+    outputs, arithmetic = tuple(outputs), arithmetic or FLOAT
     if Node not in map(type, outputs):
         return [arithmetic.number(x) for x in outputs if type(x) is not Node]
     way = _way(outputs, NONE)

@@ -19,6 +19,7 @@ from eomgen.symbolic.expression import (
     Sampled,
     Scalar,
     State,
+    depends_on,
     gradient,
     holds_op,
     linear_terms,
@@ -36,6 +37,18 @@ BEYOND = (Fraction(1, 2), Fraction(1, 20), Fraction(1, 200))  # of the nearest p
 COMPARING = ("less", "less_equal", "min", "max")
 ABOUT_ZERO = ("abs", "sign")
 PIECEWISE = (*COMPARING, *ABOUT_ZERO, "sampled")
+
+
+def has_pieces(x: Scalar, of: Sequence[Node] | None = None) -> bool:
+    """True if a formula consists of several pieces.
+
+    Args:
+        of: those count that depend on one of these symbols (None: all).
+    """
+    if of is None or not holds_op(x, *PIECEWISE):
+        return holds_op(x, *PIECEWISE)
+    return any(node.op in PIECEWISE and depends_on(node, of) for node in order((x,)))
+
 
 Choices = tuple[int, ...]
 """Of each node that has pieces: the sign of its argument, or of the difference of both; of samples the place."""
@@ -94,7 +107,7 @@ class Switch:
 
 def piecewise_nodes(scalars: Iterable[Scalar], moving: frozenset[Node]) -> tuple[Node, ...]:
     """The nodes whose form changes with something that moves, in the order of evaluation."""
-    nodes = order(x for x in scalars if holds_op(x, *PIECEWISE))
+    nodes = order(filter(has_pieces, scalars))
     active = _active(nodes, moving)
     return tuple(x for x in nodes if (x.op in PIECEWISE or _base(x) is not None) and x in active)
 
@@ -191,7 +204,7 @@ def _active(nodes: Sequence[Node], moving: frozenset[Node]) -> set[Any]:
 
 def switches_of(scalars: Iterable[Scalar], moving: frozenset[Node]) -> tuple[Switch, ...]:
     """Every switch in the scalars that something that moves can throw."""
-    nodes = order(x for x in scalars if holds_op(x, *PIECEWISE))
+    nodes = order(filter(has_pieces, scalars))
     active = _active(nodes, moving)
     found: dict[tuple[tuple[int, Any], ...], tuple[Scalar, dict[Scalar, None]]] = {}
     for x in nodes:
