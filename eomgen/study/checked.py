@@ -61,7 +61,7 @@ class Checked:
 
     @property
     def nodes(self) -> tuple[str, ...]:
-        """What is assumed of massless nodes, in words."""
+        """Assumptions about massless nodes, in words."""
         return reported_of_nodes(self.model)
 
     @property
