@@ -103,6 +103,9 @@ from eomgen.model.forces.base import FlowOfMass as FlowOfMass
 # A potential energy, or a kinetic one, without a point of application [J]
 from eomgen.model.forces.base import GivenEnergy as GivenEnergy
 
+# Couples of two wheels that mesh with play
+from eomgen.model.forces.base import Meshing as Meshing
+
 # A force per length on a body from one of its points to another, linear between, ground axes [N/m]
 from eomgen.model.forces.base import PushAlongLine as PushAlongLine
 

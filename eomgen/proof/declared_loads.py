@@ -23,6 +23,7 @@ from eomgen.model import (
     Element,
     FlowOfMass,
     GivenEnergy,
+    Meshing,
     PushAlong,
     PushAlongLine,
     PushAt,
@@ -180,6 +181,9 @@ class _Declared(InNumbers):
             for body, sign in zip(act.bodies, (1, -1), strict=True):
                 if body is not None:
                     yield from self._of_couple(body, Vector((0, 0, sign * pull)))
+        elif isinstance(act, Meshing):
+            for body, couple in self._meshing(act):
+                yield from self._of_couple(body, couple)
         elif isinstance(act, ElasticThread):
             for stop, at, pull in StretchedRope(self.system, self.state, act).pulls():
                 yield from zip(stop.place, pull, strict=True)
@@ -218,6 +222,9 @@ class _Declared(InNumbers):
                 pull = ActingElement(self.system, self.state, act).law[0]
                 for body, sign in zip(act.bodies, (1, -1), strict=True):
                     add_push(found, body, Vector((0, 0, sign * pull)), Vector.ZERO)
+            elif isinstance(act, Meshing):
+                for body, couple in self._meshing(act):
+                    add_push(found, body, couple, Vector.ZERO)
             elif isinstance(act, ElasticThread):
                 for stop, at, pull in StretchedRope(self.system, self.state, act).pulls():
                     add_push(found, stop.body, at.cross(pull), pull)
@@ -279,6 +286,27 @@ class _Declared(InNumbers):
         for point, sign in zip(element.points, (1, -1), strict=True):
             place = self.scene.place(point)
             yield place[0], self.scene.position(place), sign * acting.law[0] * acting.direction
+
+    def _meshing(self, act: Meshing) -> list[tuple[str, Vector]]:
+        """(wheel, couple) of both: the teeth push where x is beyond the play; the driven wheel gets its share."""
+        value, (first, second) = self.system.scope.value, act.bodies
+        ratio, k, c, play = self.at((*map(value, (act.ratio, act.stiffness, act.damping, act.play)),))
+        eta = 1 if act.efficiency is None else self.one(value(act.efficiency))
+        begun = self.one(self.scene.start(self.scene.angle(first) - value(act.ratio) * self.scene.angle(second)))
+        pair = ActingElement(self.system, self.state, Element(bodies=act.bodies))
+        (theta_1, w_1), (theta_2, w_2) = map(pair.turned, act.bodies)
+        x, rate = theta_1 - ratio * theta_2 - begun, w_1 - ratio * w_2
+        side = 1 if x > 0 else -1
+        beyond = side * x - play / 2
+        M = side * max(k * beyond + side * c * rate, 0) if beyond > 0 else 0 * x
+        M = k * x + c * rate if act.play is None else M
+        if act.smooth is None:
+            drives = (M * w_1 > 0) - (M * w_1 < 0)
+        else:
+            drives = fifty_digits().functions["tanh"](w_1 / self.one(value(act.smooth))) * ((M > 0) - (M < 0))
+        lost = (1 - eta) / fifty_digits().number(2)
+        on_first, on_second = -M * (1 - lost * (1 - drives)), ratio * M * (1 - lost * (1 + drives))
+        return [(first, Vector((0, 0, on_first))), (second, Vector((0, 0, on_second)))]
 
     def _couple(self, act: CoupleOn) -> Vector:
         given = self.at([self.system.scope.value(x) for x in act.couple])
@@ -461,13 +489,13 @@ class ActingElement(InNumbers):
     def measured(self) -> tuple[Any, Any]:
         """(l, l') or (theta, theta')."""
         if not self.element.points:
-            (first, w_1), (second, w_2) = map(self._turned, self.element.bodies)
+            (first, w_1), (second, w_2) = map(self.turned, self.element.bodies)
             return second - first, w_2 - w_1
         speeds = [self.vector(self.motion.velocity(self.scene.place(p))) for p in self.element.points]
         n = self.direction
         return (self.ends[1] - self.ends[0]) @ n, (speeds[1] - speeds[0]) @ n
 
-    def _turned(self, body: str | None) -> tuple[Any, Any]:
+    def turned(self, body: str | None) -> tuple[Any, Any]:
         """Angle of the axes about z, with the whole turns of the body, and its rate."""
         if body is None:
             return 0, 0

@@ -759,8 +759,16 @@ class Drawing:
                 "kind": "rope",
                 "path": two,
                 "stiffness": "k",
-                "length": rng.choice(["l/5", "l*(1 + w*t)/9"]),
+                "length": rng.choice(["l/5", "l*(1 + w*t)/9", "start"]),
                 **rng.choice(({}, {"damping": "c/5"})),
+            },
+            "gear_mesh": {
+                "kind": "gear_mesh",
+                "bodies": [rng.choice(others), body] if others else [body, body],
+                "ratio": rng.choice([-2, 1.5]),
+                "stiffness": "kt",
+                **rng.choice(({}, {"backlash": 0.1}, {"damping": "ct/5"})),
+                **rng.choice(({}, {"efficiency": 0.9, "smooth": 0.7})),
             },
             "mass_flow": {
                 "kind": "mass_flow",

@@ -20,7 +20,7 @@ FORCES = (
     "gravity", "force", "follower", "couple", "distributed", "spring", "spring_along", "spring_start", "spring_moved",
     "damper", "damper_along", "torsion_spring", "torsion_damper", "between", "potential", "kinetic", "generalized",
     "values", "mass_flow", "rain", "bumper",
-    "rope", "none",
+    "rope", "gear_mesh", "none",
 )  # fmt: skip
 
 FACTORS: dict[str, tuple[str, ...]] = {
@@ -91,6 +91,10 @@ FORBIDDEN: tuple[Forbidden, ...] = (
         ("torsion_spring", "torsion_damper"),
         "in space it stands in the joint",
         "no single angle in space",
+    ),
+    *(
+        Forbidden(("space", "space"), (factor, "gear_mesh"), "its wheels are of the plane", "turn in one plane")
+        for factor in ("force", "second_force")
     ),
     Forbidden(("space", "plane"), ("speeds", "omega"), "omega needs three components", "omega"),
     *_each(

@@ -568,9 +568,33 @@ def _bumper(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
 def _rope(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
     """k s + c s' of a rope between two points where its stretch s > 0, and never below 0."""
     k, c = (_number(now.value(f.get(x, 0))) for x in ("stiffness", "damping"))
+    if f["length"] == "start":
+        begun = _rest_length(f | {"points": f["path"]}, now, o)
+        return _pair(name, now, f["path"], lambda r, v: max(0.0, k * (r - begun) + c * v) if r > begun else 0.0)
     slack = jet(now.value(f["length"])).c
     l0, paid = float(slack[0][0]), float(slack[1][0]) if slack.shape[-1] > 1 or len(slack) > 1 else 0.0
     return _pair(name, now, f["path"], lambda r, v: max(0.0, k * (r - l0) + c * (v - paid)) if r > l0 else 0.0)
+
+
+def _gear_mesh(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
+    """Teeth push beyond half the play, - M on the first and ratio M on the second; the driven one gets its share."""
+    first, second = f["bodies"]
+    ratio, k, c, play, eta, v = (
+        now.model.number(f.get(x, y))
+        for x, y in (
+            ("ratio", 0), ("stiffness", 0), ("damping", 0), ("backlash", 0), ("efficiency", 1), ("smooth", 1)
+        )
+    )  # fmt: skip
+    angles = [_absolute_angle(now, b) - _absolute_angle(o.start, b) for b in (first, second)]
+    rates = [float(component(now.spin(b), 2).c[0][0]) for b in (first, second)]
+    x, rate = angles[0] - ratio * angles[1], rates[0] - ratio * rates[1]
+    side = np.sign(x)
+    M = side * max(0.0, k * (abs(x) - play / 2) + side * c * rate) if abs(x) > play / 2 else 0.0
+    M = M if "backlash" in f else k * x + c * rate
+    drives = np.sign(M) * np.tanh(rates[0] / v)
+    shares = (1 - (1 - eta) * (1 - drives) / 2, 1 - (1 - eta) * (1 + drives) / 2)
+    couples = ((first, -M * shares[0]), (second, ratio * M * shares[1]))
+    return [Load(name, b, torque=np.array([0, 0, x])) for b, x in couples]
 
 
 def _mass_flow(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
@@ -690,7 +714,7 @@ FORCES: dict[str, Callable] = {
     "gravity": _gravity, "force": _force, "couple": _couple, "distributed": _distributed, "spring": _spring,
     "damper": _damper, "between": _between, "torsion_spring": _torsion_spring, "torsion_damper": _torsion_damper,
     "potential": _potential, "generalized": _generalized, "kinetic": lambda *_: [], "mass_flow": _mass_flow,
-    "bumper": _bumper, "rope": _rope,
+    "bumper": _bumper, "rope": _rope, "gear_mesh": _gear_mesh,
 }  # fmt: skip
 
 

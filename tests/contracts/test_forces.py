@@ -115,6 +115,14 @@ EXAMPLES = {
         ],
         SPACE: ['path = ["G", "upper.R", "lower.P"], stiffness = "k", length = "l/9", damping = "c/9"'],
     },
+    "gear_mesh": {
+        PLANE: [
+            'bodies = ["upper", "lower"], ratio = -2, stiffness = "k"',
+            'bodies = ["upper", "lower"], ratio = "l", stiffness = "k", backlash = "w/40", damping = "c/9"',
+            'bodies = ["lower", "upper"], ratio = 3, stiffness = "k", efficiency = "w*3/5"',
+            'bodies = ["lower", "upper"], ratio = 3, stiffness = "k", backlash = "w/90", efficiency = 1, smooth = "l"',
+        ],
+    },
     "mass_flow": {
         PLANE: [
             'point = "lower.P", velocity = ["k", "c*b\'"], axes = "lower", rate = "tau"',

@@ -209,6 +209,8 @@ acceleration = [0, -9.81]
         hertz="kind = 'bumper'\npoints = ['two.Q', 'one.start']\nstiffness = 'k'\nlength = 9\nexponent = 1.5\n"
         "dissipation = 'c'\nalong = [1, 2]",
         rope="kind = 'rope'\npath = ['two.Q', 'one.start']\nstiffness = 'k'\nlength = 0.1\ndamping = 'c'",
+        teeth="kind = 'gear_mesh'\nbodies = ['one', 'two']\nratio = -2\nstiffness = 'k'\ndamping = 'c'\n"
+        "backlash = 0.1\nefficiency = 0.9\nsmooth = 0.2",
         rain="kind = 'mass_flow'\npoint = 'two.end'\nabsolute = ['u', \"-a'\"]",
     ),
     "pin": constraint("kind = 'pin'\npoints = ['plate.P']", free()),

@@ -8,6 +8,7 @@ from eomgen.model.forces.base import Force
 from eomgen.model.forces.bumper import Bumper
 from eomgen.model.forces.elements import Between, Damper, Spring
 from eomgen.model.forces.energies import Kinetic, Potential
+from eomgen.model.forces.gear_mesh import GearMesh
 from eomgen.model.forces.mass_flow import MassFlow
 from eomgen.model.forces.rope import Rope
 from eomgen.model.forces.torsion import TorsionDamper, TorsionSpring
@@ -25,6 +26,7 @@ ALL = (
     Between,
     Bumper,
     Rope,
+    GearMesh,
     MassFlow,
     Potential,
     Kinetic,
@@ -39,6 +41,7 @@ __all__ = [
     "Damper",
     "Distributed",
     "Force",
+    "GearMesh",
     "Generalized",
     "Gravity",
     "Kinetic",

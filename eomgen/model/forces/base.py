@@ -129,8 +129,29 @@ class ElasticThread:
     damping: Expression | None = None
 
 
+@dataclass(frozen=True)
+class Meshing:
+    """Couples of two wheels by x = theta_1 - ratio theta_2 beyond their play, of which the driven one has a share.
+
+    Args:
+        stiffness, damping: of x and its rate, at the first wheel.
+        play: the whole of it in x; None: 0.
+        efficiency: the share of the driven one; None: 1.
+        smooth: the speed of the first over which the driven side changes; None: at once.
+    """
+
+    bodies: tuple[str, ...]
+    ratio: Expression
+    stiffness: Expression
+    damping: Expression | None = None
+    play: Expression | None = None
+    efficiency: Expression | None = None
+    smooth: Expression | None = None
+
+
 Act = (
     FlowOfMass
+    | Meshing
     | ElasticThread
     | Element
     | PushAt

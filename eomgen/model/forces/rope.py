@@ -57,6 +57,10 @@ class Rope(Force):
             yield Diagnostic((*path, "path"), what, "fasten a body to it, or wind it on a drum that can turn")
 
     @property
+    def of_the_start(self) -> bool:
+        return self.length == "start"
+
+    @property
     def acts(self) -> tuple[Act, ...]:
         return (ElasticThread(self.path, self.stiffness, self.length, self.damping),)
 
