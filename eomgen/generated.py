@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
@@ -33,10 +34,13 @@ from eomgen.proof import (
     unwritten,
 )
 from eomgen.resources import doing
+from eomgen.simulation import PhaseIntegrator, PhaseModels
 from eomgen.study import Matrices, model_to_study
 from eomgen.symbolic.numeric import tolerances
 from eomgen.version import __version__
 
+TESTED = 3.0  # [s] of the run with which an integrator through phases is tested
+FINE = tolerances.FINE_RUN  # its tolerance
 NOT_SINGLE = (
     "at no state tried are the values single, as a change of the state opens redundant constraints, and which of "
     "these still hold then decides"
@@ -144,7 +148,8 @@ class Generated:
         open_constraints = (
             "what puts the constraints back as they open by the errors of many steps (--baumgarte lets them pull)"
         )
-        drifts = self.integrator and any(not row.identical for row in self.equations.graph.system.constraints.rows)
+        one_phase = self.integrator and not self.model.changing
+        drifts = one_phase and any(not row.identical for row in self.equations.graph.system.constraints.rows)
         unfinished += ["jacobian: nothing moves"] if self.slopes and Role.JACOBIAN not in self.functions else []
         unfinished += [f"test vectors of the {d.role.word}: {d.untested}" for _, d in self.emitted if d.untested]
         return (*(note for note in (self.note, open_constraints * drifts) if note), *left, *unfinished)
@@ -206,7 +211,25 @@ class Generated:
     @cached_property
     def _files(self) -> Files:
         begin = (self._emitter.x0, self._emitter.p0) if self.integrator else None
-        return Files(self.stem, self.emitted, self.targets, self.notes, begin, self.float32)
+        run = self._phases if self.integrator and self.model.changing else {}
+        return Files(self.stem, self.emitted, self.targets, self.notes, begin, self.float32, run)
+
+    @property
+    def _phases(self) -> dict[str, str]:
+        """The integrator of a model whose contacts change, with eomgen's own run as its test."""
+        x0, p0 = self._emitter.x0, self._emitter.p0
+        tested = None
+        if x0 is not None and p0 is not None:
+            fine = pipeline.simulate(self.model, time=TESTED, rtol=FINE, atol=FINE, samples=2)
+            struck = {impact.t for impact in fine.impacts}
+            pairs = zip(fine.phases, fine.phases[1:], strict=False)
+            changes = [a.end for a, b in pairs if a.end in struck or a.model is not b.model]
+            last = dict(zip(fine.moving, fine.x[-1].tolist(), strict=True))
+            tested = (changes, float(fine.t[-1]), last) if fine.ok else None
+        p = np.array(p0 if p0 is not None else [math.nan] * len(self.model.parameters))
+        models = PhaseModels(self.model, p, "numpy")
+        states = tuple(x.name for x in self.motion[0].states)
+        return PhaseIntegrator(models, self.stem, states, x0, p0, tolerances.RUN, tested).files()
 
     def write(self, directory: str | Path) -> list[Path]:
         """Writes the files, all of them or none.
@@ -344,7 +367,7 @@ def generate(
     """
     model = model_to_study(model, parameters, start)
     if integrator:
-        _refuse_integrator(model, targets)
+        _refuse_integrator(model, targets, float32)
     doubles = [target.name for target in targets_named(targets) if target.single is None]  # refuses what is none
     if float32 and doubles:
         some = ", ".join(target.name for target in targets_named() if target.single is not None)
@@ -365,7 +388,7 @@ def generate(
     )
 
 
-def _refuse_integrator(model: Model, targets: Sequence[str]) -> None:
+def _refuse_integrator(model: Model, targets: Sequence[str], float32: bool) -> None:
     """Refuses an integrator of what cannot have one.
 
     Raises:
@@ -373,10 +396,12 @@ def _refuse_integrator(model: Model, targets: Sequence[str]) -> None:
     """
     if "c" not in targets:
         raise UsageError("an integrator is written in C", fix="ask for --target c too")
-    changing = model.changing
-    if changing:
-        names = ", ".join(f"'{name}'" for name in changing)
-        raise UsageError(f"no integrator for what changes its equations: {names}", fix="take eomgen simulate")
+    if not model.changing:
+        return
+    PhaseIntegrator.refuse(model)
+    if float32:
+        names = ", ".join(f"'{name}'" for name in model.changing)
+        raise UsageError(f"no integrator in single precision for what changes its equations: {names}", fix="doubles")
 
 
 def _remarks(model: Model) -> dict[str, str]:

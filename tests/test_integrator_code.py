@@ -13,6 +13,7 @@ import pytest
 from click.testing import CliRunner
 from closed_motions import DRAGGED, STEP, off
 from hand_made import symbols
+from motions_with_phases import NAMES, duration, model_with_phases
 from slow_run import usual
 
 import eomgen
@@ -199,7 +200,9 @@ def test_the_text_of_numbers_types_and_functions():
 @pytest.mark.parametrize(
     ("name", "how", "message"),
     [
-        ("sliding_ladder", {"integrator": True}, "'floor', 'wall'"),
+        ("loop_the_loop", {"integrator": True}, "'bead', on paths of pieces"),
+        ("spinning_ball", {"integrator": True}, "the rolling 'floor', which rubs in its impacts"),
+        ("bouncing_ball", {"integrator": True, "float32": True}, "no integrator in single precision"),
         ("double_pendulum", {"integrator": True, "targets": ("numpy",)}, "written in C"),
         ("double_pendulum", {"float32": True, "targets": ("c", "numpy", "fmu")}, "no single precision in numpy, fmu"),
         ("bricard", {"float32": True}, "constraints that multipliers close"),
@@ -208,6 +211,48 @@ def test_the_text_of_numbers_types_and_functions():
 def test_what_has_none_is_refused_by_name(name, how, message):
     with pytest.raises(UsageError, match=message):
         eomgen.generate(MODELS / f"{name}.toml", **how)
+
+
+def through_phases(tmp_path: Path, name: str) -> Path:
+    """The folder with the program of a model whose contacts change, and its own test."""
+    eomgen.generate(model_with_phases(name), name=name, integrator=True).write(tmp_path)
+    for word, made in (("MAIN", "run"), ("RUN_SELFTEST", "selftest")):
+        files = [f"{name}_run.c", f"{name}_rhs.c", "-lm", "-o", made]
+        found = subprocess.run([CC, *STRICT, f"-D{name}_{word}", *files], cwd=tmp_path, capture_output=True, text=True)
+        assert found.returncode == 0, found.stderr
+    return tmp_path
+
+
+@pytest.mark.slow
+@needs_compiler
+@pytest.mark.parametrize("name", usual(["stick_slip", "crank", "funnel", "arm", "sliding_ladder", *NAMES], 4))
+def test_it_goes_through_phases_as_simulate_does(name, tmp_path):
+    """Its own test holds; its states are those of `simulate`, contacts change at the same instants."""
+    folder, time = through_phases(tmp_path, name), duration(name)
+    subprocess.run([folder / "selftest"], check=True)
+    words = (f"--time={time}", "--samples=11", "--rtol=1e-10", "--atol=1e-10")
+    head, rows = table(folder / "run", *words)
+    run = eomgen.simulate(model_with_phases(name), time=time, samples=np.linspace(0, time, 11).tolist())
+    assert {*run.coordinates, *run.speeds} <= {*head}
+    for column in (*run.coordinates, *run.speeds):
+        assert rows[:, head.index(column)] == pytest.approx(run[column], abs=1e-8)
+    found = subprocess.run([folder / "run", "--events=1", *words], capture_output=True, text=True, check=True)
+    instants = {float(line.split(",")[0]) for line in found.stdout.splitlines()[1:]}
+    assert sorted(instants) == pytest.approx([phase.end for phase in run.phases[:-1]], abs=1e-8)
+
+
+@pytest.mark.slow
+@needs_compiler
+def test_its_own_test_sees_another_motion(tmp_path):
+    """With a restitution that is a little larger its instants are others; where a contact has none, it says so."""
+    folder = through_phases(tmp_path, "bouncing_ball")
+    text = (folder / "bouncing_ball_run.c").read_text()
+    assert text.count("BOUNCING_BALL_VALUES {0.5, 1.0, 0.6,") == 1
+    (folder / "bouncing_ball_run.c").write_text(text.replace("VALUES {0.5, 1.0, 0.6,", "VALUES {0.5, 1.0, 0.60001,"))
+    files = ["bouncing_ball_run.c", "bouncing_ball_rhs.c", "-lm", "-o", "wrong"]
+    subprocess.run([CC, "-O1", "-Dbouncing_ball_RUN_SELFTEST", *files], cwd=folder, check=True)
+    found = subprocess.run([folder / "wrong"], capture_output=True, text=True)
+    assert found.returncode == 1 and "change" in found.stderr
 
 
 @pytest.mark.slow

@@ -246,8 +246,8 @@ DOORS = {  # rooms that are imported through what their stub names, and how many
     "verbs": 13,
     "living": 1,
     "language_server": 2,
-    "codegen": 29,
-    "simulation": 28,
+    "codegen": 30,
+    "simulation": 29,
     "documents": 138,
     "results": 16,
     "study": 20,
@@ -374,10 +374,10 @@ def house():
 
 def test_a_newcomer_has_no_more_to_know_than_was_reached(house):
     """Modules outside the seams, lines of the longest, modules of one importer, names of lower rooms used elsewhere."""
-    assert len(house.chapters) <= 353
+    assert len(house.chapters) <= 355
     assert max(m.lines for m in house.modules.values()) <= 700
     assert len(house.private) <= 52
-    assert len(house.taken_from(("symbolic", "model", "mechanics", "codegen", "simulation"))) <= 567
+    assert len(house.taken_from(("symbolic", "model", "mechanics", "codegen", "simulation"))) <= 569
     assert {room: k for room in FOREIGN if (k := len(house.taken_by(room))) > FOREIGN[room]} == {}
 
 
@@ -432,7 +432,7 @@ def test_what_is_derived_of_a_model_is_cached_by_its_study_and_few_others(house)
     assert found.pop("study.study.Study") == max(house.bundles, key=lambda each: each[1])[1]
     assert {name: k for name, k in found.items() if k > READERS.get(name, 6)} == {}
     assert READERS.keys() <= found.keys()
-    assert len(found) <= 66
+    assert len(found) <= 67
 
 
 def test_a_bundle_is_seen_by_whatever_it_caches(house, tmp_path):

@@ -60,6 +60,9 @@ from eomgen.codegen.targets.base import TestVector as TestVector
 # Several programs, compiled as one text
 from eomgen.codegen.targets.c import c_together as c_together
 
+# STEM_constants and STEM_evaluate of a program, which no other file sees, the number of the constants
+from eomgen.codegen.targets.c import hidden_in_c as hidden_in_c
+
 # An object of the functions `constants` and `evaluate`, for scripts that are no modules
 from eomgen.codegen.targets.javascript import javascript_expression as javascript_expression
 

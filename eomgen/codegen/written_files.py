@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import field, replace
 from functools import cached_property
 from types import MappingProxyType
 from typing import Any
@@ -122,6 +122,7 @@ class Files:
         begin: (states, values of the parameters) in the program of an integrator of its own in C, None where one is
             missing; None: without an integrator.
         float32: True for single precision everywhere.
+        run: files of an integrator of its own that go through phases, in place of those of one phase.
     """
 
     name: str
@@ -130,6 +131,7 @@ class Files:
     notes: tuple[str, ...] = ()
     begin: tuple[Sequence[float] | None, Sequence[float] | None] | None = None
     float32: bool = False
+    run: Mapping[str, str] = field(default_factory=dict)
 
     @cached_property
     def texts(self) -> dict[str, FileContent]:
@@ -188,6 +190,8 @@ class Files:
     def _integrator(self) -> dict[str, str]:
         if self.begin is None:
             return {}
+        if self.run:
+            return {**self.run}
         rtol = tolerances.SINGLE if self.float32 else tolerances.RUN
         return integrator_files(stem_of(self.name), self.emitted[0][0], *self.begin, rtol)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cached_property
 
 from eomgen.frozen import dataclass
 from eomgen.model.constraints import Constraint
@@ -86,7 +87,7 @@ class Connections:
     bodies: Table[Body]
     constraints: Table[Constraint]
 
-    @property
+    @cached_property
     def contacts(self) -> tuple[Contact, ...]:
         """Every constraint that can end or has friction, bodies with friction on their paths, joints that can stick."""
         laws = ((name, getattr(body.joint, "friction", None)) for name, body in self.bodies.items())

@@ -90,7 +90,8 @@ def many_runs(
     if threads < 1:
         raise UsageError(f"{threads} threads make no sense", fix="give 1 or more")
     plan = _planned(simulator, time, parameters or {}, start or {}, inputs or {}, samples)
-    found = _in_lanes(plan, threads) or _in_marches(plan, threads) or _one_by_one(plan, range(plan.runs), threads)
+    found = _in_lanes(plan, threads) or _in_marches(plan, threads) or _in_phases(plan, threads)
+    found = found or _one_by_one(plan, range(plan.runs), threads)
     names, status, message, x, steps = found
     x[status != "finished"] = np.nan
     equations, phase = _known(plan.simulator)
@@ -190,11 +191,15 @@ def _runs_of(plan: _Plan, phase: PhaseModel, threads: int) -> ManyRuns:
     return ManyRuns(phase, how, plan.instants, plan.time, partial(_parameters, plan), threads)
 
 
-def _completed(plan: _Plan, found: FoundRuns, threads: int) -> Reported:
-    """The runs, with those that are run alone."""
+def _completed(plan: _Plan, found: FoundRuns, threads: int, alone: Reported | None = None) -> Reported:
+    """The runs, with those that are run alone.
+
+    Args:
+        alone: these, where they have been run.
+    """
     x, status, message, steps = found.x, found.status, found.message, found.steps
     if len(found.alone):
-        reported = _one_by_one(plan, found.alone.tolist(), threads)
+        reported = alone or _one_by_one(plan, found.alone.tolist(), threads)
         _, status[found.alone], message[found.alone], x[found.alone], steps[found.alone] = reported
     return found.names, status.astype(str), message, x, steps.astype(int)
 
@@ -212,6 +217,28 @@ def _in_marches(plan: _Plan, threads: int) -> Reported | None:
         return None
     found = _runs_of(plan, base.models.only, threads).in_marches(base.derived, plan.start)
     return None if found is None else _completed(plan, found, threads)
+
+
+def _in_phases(plan: _Plan, threads: int) -> Reported | None:
+    """All runs of a model whose contacts change, those that are left one by one; None where it does not go."""
+    simulator = plan.simulator
+    if not (simulator.how.is_in_marches and plan.model.has_phases) or simulator.target == "numpy":
+        return None
+    base = _base(plan)
+    if base is None:
+        return None
+    parameters, start = plan.of(0)
+    models = base.models.at(parameter_vector(plan.model, parameters))
+    try:
+        found = _runs_of(plan, _known(simulator)[1], threads).in_phases(models, start, base.derived, plan.start)
+    except EomgenError:  # the first run says why
+        return None
+    if found is None or len(found.alone) == plan.runs:
+        return None
+    if not len(found.alone):
+        return _completed(plan, found, threads)
+    reported = _one_by_one(plan, found.alone.tolist(), threads)
+    return _completed(plan, found, threads, reported) if reported[0] == found.names else None
 
 
 def _base(plan: _Plan) -> KnownEquations | None:

@@ -43,6 +43,9 @@ from eomgen.simulation.motion import Plan as Plan
 # State in which a phase begins, and the configuration of its contacts
 from eomgen.simulation.phase_change import PhaseStart as PhaseStart
 
+# An integrator of its own for a model whose contacts change, in C
+from eomgen.simulation.phase_integrator import PhaseIntegrator as PhaseIntegrator
+
 # The model of one phase. Its state is x = (q, u), and after these the slack of each string that hangs loose
 from eomgen.simulation.phase_model import PhaseModel as PhaseModel
 

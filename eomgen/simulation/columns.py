@@ -21,7 +21,7 @@ from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies import Indeterminate, NamedReaction, Reactions
 from eomgen.mechanics.instant import Quantities
 from eomgen.model import FUNCTIONS, Model, OutputSource
-from eomgen.simulation.phase_functions import PhaseFunctions
+from eomgen.simulation.contacts import PhaseFunctions
 from eomgen.simulation.phase_model import PhaseModel
 from eomgen.simulation.reaction_columns import ReactionColumns, begun
 from eomgen.symbolic.expression import Call, Expression, Node, Scalar, depends_on, derivative, substituted

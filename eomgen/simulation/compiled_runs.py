@@ -21,13 +21,15 @@ from eomgen.codegen import Batch, BatchOptions, in_c, order_for
 from eomgen.errors import RunFailed, ToolMissing
 from eomgen.frozen import dataclass
 from eomgen.resources import check_patience, in_threads, pieces_of
+from eomgen.simulation.compiled_phases import CompiledPhases, CompiledRuns, is_in_phases
 from eomgen.simulation.compiled_steps import CompiledSteps
 from eomgen.simulation.constraint_drift import RankLookout
 from eomgen.simulation.integration import drift_of
 from eomgen.simulation.integrator import Stepping, ended_words, reached_words
 from eomgen.simulation.many_runs import BATCHED, ManyStarts, library_of_march
+from eomgen.simulation.phase_change import contacts_away, plain
 from eomgen.simulation.phase_model import PhaseModel
-from eomgen.simulation.phase_models import DerivedAt
+from eomgen.simulation.phase_models import DerivedAt, PhaseModels
 from eomgen.simulation.singular import NEARNESS, vanishing_after
 from eomgen.simulation.solvers import SEEN, TAYLOR
 from eomgen.symbolic.numeric import tolerances
@@ -143,10 +145,113 @@ class ManyRuns:
         status, message = np.full(runs, "finished", object), np.full(runs, reached_words(self.end), object)
         return FoundRuns(names, x, status, message, steps, np.setdiff1d(np.arange(runs), which[found.is_done]))
 
+    def in_phases(
+        self, models: PhaseModels, first: Mapping[str, float], derived: DerivedAt, given: Mapping[str, np.ndarray]
+    ) -> FoundRuns | None:
+        """The runs of a model whose contacts change; None where the model does not allow it.
+
+        Args:
+            models: its phases, at the values of the first run.
+            first: the start of the first run.
+            derived, given: as of `in_marches`.
+        """
+        runs = _PhasedRuns(models, self.how, self.instants, self.end, self.parameters, self.threads, first)
+        return runs.in_c(derived, given)
+
     def drifts(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
         """Drift of the energy of each run; x: runs x instants x states."""
         energies = self.phase.functions.energies
         return np.array([drift_of(*energies.many(t, each, own).T) for each, own in zip(x, self.p, strict=True)])
+
+
+# -------- phases ----------------------------------------------------------------------------------------------
+# Runs whose contacts change -> their states: in each thread one after the other, by `phases.c`.
+
+
+@dataclass(frozen=True)
+class _PhasedRuns:
+    """Many runs through phases, from t = 0 to one end, as they are made in C.
+
+    Args:
+        models: the phases, at the values of the first run.
+        how, instants, end, parameters, threads: as of `ManyRuns`.
+        first: the start of the first run.
+    """
+
+    models: PhaseModels
+    how: Stepping
+    instants: np.ndarray
+    end: float
+    parameters: Callable[[], np.ndarray]
+    threads: int
+    first: Mapping[str, float]
+
+    def in_c(self, derived: DerivedAt, given: Mapping[str, np.ndarray]) -> FoundRuns | None:
+        """The runs; None where the model does not allow it.
+
+        Those are to be run alone that begin otherwise than the first (with other contacts open), whose start is not
+        known in doubles, or that C leaves to others.
+
+        Args:
+            derived: values at which the equations were derived.
+            given: starts in place of the model's, a number a run.
+        """
+        models, p = self.models, np.ascontiguousarray(self.parameters(), dtype=float)
+        if not is_in_phases(models, self.how):
+            return None
+        away = contacts_away(models, 0.0, self.first)
+        before = plain(models.model, {}, away)
+        phase = models.of(before)
+        if phase.functions.rhs.target != "c" or not len(phase.speeds):
+            return None
+        names, runs = phase.coordinates + phase.shown + phase.states, len(p)
+        made = in_c(lambda: [CompiledPhases(models, self.how, names)], "runs are made one by one")
+        if made is None:
+            return None
+        x, places, known = ManyStarts(phase).at(p, given)
+        columns = dict(zip(phase.moving, x.T, strict=True))
+        rates = phase.functions.kinematic(phase.system.scope.rates).many(0.0, x, p)
+        columns = {f"{q}'": rate for q, rate in zip(phase.coordinates, rates.T, strict=True)} | columns
+        known &= derived.holds(p, places) & np.all(np.isfinite(x), axis=1)
+        known &= self._begin_alike(columns, p, away)
+        which = np.flatnonzero(known)
+        values = np.ascontiguousarray(made[0].values(columns, runs)[which])
+        own, count = np.ascontiguousarray(p[which]), len(which)
+        found = CompiledRuns(
+            np.zeros((count, len(self.instants), len(names))), np.zeros(count, np.int32), np.zeros(count, np.uintp)
+        )
+        pieces = pieces_of(count, min(self.threads, max(count, 1)))
+        made += [CompiledPhases(models, self.how, names) for _ in pieces[1:]]
+        for each in made[1:]:
+            each.with_names(columns)
+        starts = values, own, before
+        work = [partial(each.runs, starts, self.instants, self.end, found, piece)
+                for each, piece in zip(made, pieces, strict=False)]  # fmt: skip
+        in_threads(work if count else [], check_patience)
+        states, steps = np.full((runs, len(self.instants), len(names)), np.nan), np.zeros(runs, dtype=int)
+        states[which], steps[which] = found.x, found.steps
+        status, message = np.full(runs, "finished", object), np.full(runs, reached_words(self.end), object)
+        alone = np.setdiff1d(np.arange(runs), which[found.is_done.astype(bool)])
+        return FoundRuns(names, states, status, message, steps, alone)
+
+    def _begin_alike(self, columns: Mapping[str, np.ndarray], p: np.ndarray, away: tuple[str, ...]) -> np.ndarray:
+        """True for each run whose contacts are open at the start, or closed, as those of the first."""
+        free, n = self.models.without_contacts, len(p)
+        if not free.contacts:
+            return np.ones(n, dtype=bool)
+        zero = np.zeros(n)
+        x = np.column_stack([columns.get(node.name, zero) for node in free.system.symbols.x])
+        found = free.functions()["gaps"].many(0.0, x, p).reshape(n, -1, 2)
+        rates = [np.abs(v) for name, v in columns.items() if name.endswith("'")]
+        places = [np.abs(v) for name, v in columns.items() if not name.endswith("'")]
+        length, still = (tolerances.COMPUTED * np.max([np.ones(n), *sizes], axis=0) for sizes in (places, rates))
+        length *= 1e2
+        gap, rate = found[:, :, 0], found[:, :, 1]
+        apart = (gap > length[:, None]) | (np.abs(rate) > still[:, None])
+        alike = np.all(gap >= -length[:, None], axis=1)
+        if away:
+            return np.asarray(alike & np.all(apart == [name in away for name in free.contacts], axis=1))
+        return np.asarray(alike & ~np.any(apart, axis=1))
 
 
 # -------- marches ---------------------------------------------------------------------------------------------

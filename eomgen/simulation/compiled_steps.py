@@ -207,7 +207,7 @@ class CompiledSteps:
         either[list(search.events.either)] = 1
         m.floors, m.either = self._put(np.array(search.events.floors, dtype=float)), self._put(either)
         m.signs, m.largest, m.armed = self._put(self._signs), self._put(self._largest), self._put(self._armed)
-        m.looks = self._put(np.zeros((event_location.PARTS + 3, k)))
+        m.looks = self._put(np.zeros((event_location.PARTS + 4, k)))  # the last for a single look
 
     def _seen(self, times: np.ndarray) -> np.ndarray:
         """The functions of the events at instants of the last step."""

@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import field, replace
 from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
 
-from eomgen.codegen import RightHandSide
+from eomgen.codegen import Program, RightHandSide, Solve
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Rank, Row
-from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.dynamics import EquationsOfMotion, System, WellPosed, with_accelerations
 from eomgen.mechanics.free_bodies import Indeterminate, Reactions
 from eomgen.mechanics.kinematics import ContactMode
 from eomgen.model import Contact, Model, Table
 from eomgen.simulation.event_location import Measured
-from eomgen.simulation.phase_functions import PhaseFunctions
 from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.symbolic.expression import Expression, Fraction, Scalar, function, order, sqrt, symbols_of
 from eomgen.symbolic.numeric import FLOAT, evaluate, tolerances
@@ -250,6 +249,91 @@ def _size(x: Scalar) -> Scalar:
     return function("abs", x)
 
 
+# -------- phase functions -------------------------------------------------------------------------------------
+# EquationsOfMotion, parameters -> PhaseFunctions: the equations of one phase, compiled when they are first used.
+
+
+@dataclass(frozen=True)
+class PhaseFunctions:
+    """Functions of the states x = (q, u, z, slacks) of one phase.
+
+    Args:
+        equations: of motion, friction included.
+        p: the parameters' values.
+        target: of the emitted code of the right-hand side.
+        made: the functions that have been compiled so far; those of other values are the same.
+    """
+
+    equations: EquationsOfMotion
+    p: np.ndarray
+    target: str | None
+    made: dict[Hashable, RightHandSide] = field(default_factory=dict, repr=False, compare=False)
+
+    def at(self, p: np.ndarray) -> PhaseFunctions:
+        """The same at other values of the parameters."""
+        return replace(self, p=p)
+
+    @property
+    def rhs(self) -> RightHandSide:
+        return self._once("rhs", self._right_hand_side)
+
+    @property
+    def energies(self) -> RightHandSide:
+        """(T, V)."""
+        self._once("rhs", self._right_hand_side)
+        return self.made["energies"]
+
+    def _right_hand_side(self) -> RightHandSide:
+        """x', and T and V in addition."""
+        WellPosed(self.equations).refuse_massless()
+        program = Program.right_hand_side(with_accelerations(self.equations))
+        energies = Program.of(
+            (self.equations.T, self.equations.V), self.equations.symbols, inputs=self.equations.system.inputs
+        )
+        found, self.made["energies"] = RightHandSide.compiled_together((program, energies), self.target)
+        return found
+
+    def _once(self, key: Hashable, make: Callable[[], RightHandSide]) -> RightHandSide:
+        if key not in self.made:
+            self.made[key] = make()
+        return self.made[key]
+
+    @property
+    def places(self) -> int:
+        """Number of coordinates."""
+        return len(self.equations.symbols.q)
+
+    def inner(self, x: np.ndarray) -> np.ndarray:
+        """(q, u, z) of states."""
+        return np.ascontiguousarray(x[..., : len(self.equations.symbols.x)])
+
+    def slacks(self, x: np.ndarray) -> np.ndarray:
+        """Slack of each string whose slack is integrated, not given by a formula."""
+        return x[..., len(self.equations.symbols.x) :]
+
+    def evaluated(self, t: np.ndarray, x: np.ndarray, scalars: tuple[Scalar, ...]) -> np.ndarray:
+        """Functions of q, u, z, t, accelerations and multipliers along the states, n x scalars."""
+        return self.function(scalars).many(t, self.inner(x), self.p)
+
+    def function(self, scalars: tuple[Scalar, ...]) -> RightHandSide:
+        """Functions of q, u, z, t, accelerations and multipliers, compiled."""
+        return self._once(("in motion", scalars), lambda: self._function(scalars))
+
+    def _function(self, scalars: tuple[Scalar, ...]) -> RightHandSide:
+        solve = Solve.bordered(self.equations) if self.equations.symbols.u else None
+        return RightHandSide.of(
+            Program.of(scalars, self.equations.symbols, inputs=self.equations.system.inputs, solve=solve), "numpy"
+        )
+
+    def kinematic(self, scalars: tuple[Scalar, ...]) -> RightHandSide:
+        """Functions of q, u and t, compiled."""
+        inputs = self.equations.system.inputs
+        return self._once(
+            ("placed", scalars),
+            lambda: RightHandSide.of(Program.of(scalars, self.equations.symbols, inputs=inputs), "numpy"),
+        )
+
+
 # -------- contact signals -------------------------------------------------------------------------------------
 # ContactEvents, PhaseFunctions -> ContactSignals: what the contacts of a phase say, in numbers along its states.
 
@@ -283,7 +367,7 @@ class ContactSignals:
         reactions = np.zeros((len(t), 0)) if columns is None else columns.along(t, inner, self.functions.p)
         found = {}
         for signal in self.watch.signals:
-            if signal.column in self._with_rank and columns is not None:
+            if signal.column in self.with_rank and columns is not None:
                 values = reactions[:, columns.names.index(signal.column)]
             elif signal.value is None:
                 values = self.functions.slacks(x)[:, self.watch.loose.index(signal.owner)]
@@ -359,7 +443,7 @@ class ContactSignals:
         return (
             bound.value is None
             or stops
-            or any(s.column in self._with_rank for s in self.watch.signals if s.owner == bound.owner)
+            or any(s.column in self.with_rank for s in self.watch.signals if s.owner == bound.owner)
         )
 
     def _left(self, bound: EventFunction, signals: Mapping[tuple[str, str], np.ndarray]) -> np.ndarray:
@@ -382,16 +466,16 @@ class ContactSignals:
     @cached_property
     def _looked(self) -> RightHandSide:
         return self.functions.function(
-            tuple(s.value for s in self.watch.signals if s.value is not None and s.column not in self._with_rank)
+            tuple(s.value for s in self.watch.signals if s.value is not None and s.column not in self.with_rank)
         )
 
     @cached_property
     def _columns(self) -> ReactionColumns | None:
         """The reactions behind the signals that follow from the balance of the bodies; None without such."""
-        return ReactionColumns(self.watch.reactions, self.functions.rhs) if self._with_rank else None
+        return ReactionColumns(self.watch.reactions, self.functions.rhs) if self.with_rank else None
 
     @cached_property
-    def _with_rank(self) -> frozenset[str]:
+    def with_rank(self) -> frozenset[str]:
         """The columns for which the balance of the bodies is solved at each state, with its rank.
 
         A formula whose divisors depend on parameters only, and are not zero here, has a value at all states.

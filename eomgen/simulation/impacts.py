@@ -29,7 +29,7 @@ from eomgen.mechanics.kinematics import SystemInertia
 from eomgen.model import Contact
 from eomgen.simulation.phase_model import PhaseModel, Values
 from eomgen.simulation.result import Impact
-from eomgen.symbolic.expression import Scalar, jacobian, substituted
+from eomgen.symbolic.expression import Expression, Scalar, jacobian, substituted
 from eomgen.symbolic.numeric import tolerances
 
 
@@ -53,7 +53,7 @@ class WithoutContacts:
         """(gap, its rate) of every contact that can end; positive where it is open, and opening."""
         found = iter(self._gaps.many(t, self._x(values)[None, :], self.p)[0].tolist())
         gaps = {}
-        for name, rows in self._rows.items():
+        for name, rows in self.rows.items():
             gap = values.get(PhaseModel.slack_name(name), 0.0) if rows[0].gap is None else next(found)
             gaps[name] = (gap, next(found))
         return gaps
@@ -74,7 +74,7 @@ class WithoutContacts:
         M, rows = found[: nu * nu].reshape(nu, nu), found[nu * nu :].reshape(-1, nu + 1)
         k = len(self.system.constraints.closing)
         of_contact, first = {}, k
-        for name, own in self._rows.items():
+        for name, own in self.rows.items():
             of_contact[name], first = rows[first : first + len(own)], first + len(own)
         e, mu = self.restitutions, self._frictions
         tangents = dict(zip((name for name in mu if not self._in_space), rows[first:], strict=True))
@@ -111,22 +111,39 @@ class WithoutContacts:
         Raises:
             DerivationError: one is not between 0 and 1.
         """
-        contacts = {c.name: c.restitution for c in self.system.scope.model.contacts if c.restitution is not None}
-        value = self.system.scope.value
-        function = self._function("restitutions", lambda: tuple(value(e) for e in contacts.values()))
-        found = function.many(0.0, np.zeros((1, len(self.system.symbols.x))), self.p)[0]
-        for name, e in zip(contacts, found.tolist(), strict=True):
+        found = self._restitutions.many(0.0, np.zeros((1, len(self.system.symbols.x))), self.p)[0]
+        for name, e in zip(self.rebounding, found.tolist(), strict=True):
             if not 0 <= e <= 1:
                 what = f"the restitution of '{name}' is {e:.6g}"
                 raise DerivationError(what, f"constraints.{name}", "between 0 (no rebound) and 1 (no loss)")
-        return dict(zip(contacts, found.tolist(), strict=True))
+        return dict(zip(self.rebounding, found.tolist(), strict=True))
+
+    @property
+    def rebounding(self) -> dict[str, Expression]:
+        """The contacts with a coefficient of restitution, and what is declared."""
+        return {c.name: c.restitution for c in self.system.scope.model.contacts if c.restitution is not None}
+
+    @property
+    def _restitutions(self) -> RightHandSide:
+        value = self.system.scope.value
+        return self._function("restitutions", lambda: tuple(value(e) for e in self.rebounding.values()))
+
+    def functions(self) -> dict[str, RightHandSide]:
+        """Functions of the state that an impact needs: gaps with their rates, M with the rows, T, q', every e."""
+        return {
+            "gaps": self._gaps,
+            "matrices": self._matrices,
+            "energy": self._energy,
+            "rates": self._rates,
+            "restitutions": self._restitutions,
+        }
 
     @property
     def _in_space(self) -> bool:
         return self.system.scope.model.space == "space"
 
     @property
-    def _rough(self) -> tuple[Contact, ...]:
+    def rough(self) -> tuple[Contact, ...]:
         """The contacts whose friction has a part in their impacts: with a restitution, or under a declared law."""
         model = self.system.scope.model
         ending = [c for c in model.contacts if c.unilateral and c.mu is not None]
@@ -136,22 +153,26 @@ class WithoutContacts:
     def _frictions(self) -> dict[str, float]:
         """The coefficient of friction of each of them."""
         value = self.system.scope.value
-        function = self._function("frictions", lambda: tuple(value(c.mu) for c in self._rough))
+        function = self._function("frictions", lambda: tuple(value(c.mu) for c in self.rough))
         found = function.many(0.0, np.zeros((1, len(self.system.symbols.x))), self.p)[0]
-        return dict(zip((c.name for c in self._rough), found.tolist(), strict=True))
+        return dict(zip((c.name for c in self.rough), found.tolist(), strict=True))
 
     def _named(self, after: Jump) -> dict[str, float]:
         """The impulses by name: of a contact's first row its own."""
         found: dict[str, float] = {}
         for name, values in after.impulses.items():
-            rows = self._rows[name]
+            rows = self.rows[name]
             found |= {name if k == 0 else f"{name} {rows[k].component}": float(x) for k, x in enumerate(values)}
         found |= {f"{name} t": x for name, x in after.friction.items()}
-        closing = self.system.constraints.closing
+        return found | self.named_held(after.held.tolist())
+
+    def named_held(self, impulses: Sequence[float]) -> dict[str, float]:
+        """The impulses of the constraints that stay, by name."""
         several = [row.constraint for row in self.system.constraints.rows]
-        for row, x in zip(closing, after.held, strict=True):
+        found = {}
+        for row, x in zip(self.system.constraints.closing, impulses, strict=True):
             alone = several.count(row.constraint) == 1 or not row.component
-            found[row.constraint if alone else f"{row.constraint} {row.component}"] = float(x)
+            found[row.constraint if alone else f"{row.constraint} {row.component}"] = x
         return found
 
     def _lost(self, t: float, x: np.ndarray, u: np.ndarray) -> float:
@@ -174,7 +195,7 @@ class WithoutContacts:
         return self.made[key]
 
     @property
-    def _rows(self) -> dict[str, tuple[Row, ...]]:
+    def rows(self) -> dict[str, tuple[Row, ...]]:
         """The rows of every contact that can end, the one that can end first."""
         found: dict[str, tuple[Row, ...]] = self._once(
             "rows", lambda: {name: Row.of_constraint(self.system.motion, name) for name in self.contacts}
@@ -199,15 +220,15 @@ class WithoutContacts:
 
     def _open(self) -> tuple[Scalar, ...]:
         requested: list[Scalar] = []
-        for first, *_ in self._rows.values():
+        for first, *_ in self.rows.values():
             requested += [first.velocity] if first.gap is None else [first.gap, first.velocity]
         return tuple(requested)
 
     def _entries(self) -> tuple[Scalar, ...]:
         """M, the rows (J, sigma) of the constraints that stay, of the contacts, and of sliding velocities."""
         M = tuple(x for row in assembled_by_recursion(self.system).M for x in row)
-        rows = (*self.system.constraints.closing, *(row for own in self._rows.values() for row in own))
-        tangents = [] if self._in_space else [self._rows[contact.name][0].sliding for contact in self._rough]
+        rows = (*self.system.constraints.closing, *(row for own in self.rows.values() for row in own))
+        tangents = [] if self._in_space else [self.rows[contact.name][0].sliding for contact in self.rough]
         return (*M, *self._with_bias([*(row.velocity for row in rows), *tangents]))
 
     def _with_bias(self, velocities: Sequence[Scalar]) -> list[Scalar]:

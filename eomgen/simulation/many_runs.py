@@ -16,7 +16,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import CLOSING
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.start import Start
-from eomgen.simulation import constraint_drift, event_location
+from eomgen.simulation import constraint_drift, event_location, phase_change
 from eomgen.simulation.constraint_drift import ARMED, REMEMBERED, STEEP
 from eomgen.simulation.phase_model import PhaseModel
 from eomgen.simulation.solvers import FORGOTTEN, HELD_SHORT, SEEN
@@ -31,6 +31,7 @@ SAFETY, SMALLEST, LARGEST = 0.9, 0.2, 10.0  # factors between two step sizes, as
 SWEEPS = 30  # of turning pairs of rows; a handful does
 MOST_AT_ONCE = 1024  # steps in a call
 NEWTON_STEPS = 6  # of Radau's method, as scipy's
+MOST_AT_INSTANT = 20  # phases that end as soon as they begin, one after the other
 EASY = HELD_SHORT / 2  # h |lambda| of implicit steps with which DOP853 would go as far
 
 _CONSTANTS = {
@@ -59,6 +60,17 @@ _CONSTANTS = {
     "EASY": EASY,
     "FORGOTTEN": FORGOTTEN,
     "RADAU_STEPS": NEWTON_STEPS,
+    "SEEN": SEEN,
+    "COMPUTED": tolerances.COMPUTED,
+    "SUMMED": tolerances.SUMMED,
+    "GAP_CLOSED": tolerances.GAP_CLOSED,
+    "LOWEST_FLIGHT": tolerances.LOWEST_FLIGHT,
+    "LOW": phase_change.LOW,
+    "SOON": tolerances.SOON,
+    "SHARE": tolerances.SHARE,
+    "MOST_TRIED": phase_change.MOST_TRIED,
+    "MOST_AT_INSTANT": MOST_AT_INSTANT,
+    "COARSE": float(tolerances.COMPUTED / np.finfo(float).eps),
 }
 
 BATCHED = {name: _CONSTANTS[name] for name in ("LARGEST_GROWTH", "SMALLEST_GROWTH", "SAFETY", "SAME_INSTANT")}
@@ -129,19 +141,34 @@ class March(ctypes.Structure):
 @functools.cache
 def library_of_march() -> tuple[Any, Any, Any, Any, Any]:
     """(begin, march, dense, look, runs) of march.c, compiled."""
-    defined = [f"#define {name} {value!r}" for name, value in _CONSTANTS.items()]
-    here = resources.files("eomgen.simulation")
-    there = resources.files("eomgen.codegen")
-    texts = [there / "dop853.c", there / "dop853_pieces.c", here / "march.c", here / "radau.c"]
-    text = "\n".join([*defined, *(text.read_text(encoding="utf-8") for text in texts)])
     names = ("march_begin", "march", "march_dense", "march_look", "march_runs")
-    begin, march, dense, look, runs = functions_in_c(text, *names)
+    begin, march, dense, look, runs = functions_in_c(march_text(phases=False), *names)
     begin.argtypes, begin.restype = [_AT], None
     march.argtypes, march.restype = [_AT, _AT], ctypes.c_int
     dense.argtypes, dense.restype = [_AT], None
     look.argtypes, look.restype = [_AT, SIZE, _AT, _AT], None
     runs.argtypes, runs.restype = [_AT, _AT, SIZE], ctypes.c_int
     return begin, march, dense, look, runs
+
+
+@functools.cache
+def machine() -> tuple[Any, Any]:
+    """(machine_run, machine_runs) of phases.c, compiled with march.c."""
+    run, runs = functions_in_c(march_text(phases=True), "machine_run", "machine_runs")
+    run.argtypes, run.restype = [_AT, SIZE], ctypes.c_int
+    runs.argtypes, runs.restype = [_AT, _AT, SIZE], ctypes.c_int
+    return run, runs
+
+
+@functools.cache
+def march_text(*, phases: bool) -> str:
+    """Steps in C, and phases of them, one after the other."""
+    defined = [f"#define {name} {value!r}" for name, value in _CONSTANTS.items()]
+    here = resources.files("eomgen.simulation")
+    there = resources.files("eomgen.codegen")
+    texts = [there / "dop853.c", there / "dop853_pieces.c", here / "march.c", here / "radau.c"]
+    texts += [here / "phases.c"] * phases
+    return "\n".join([*defined, *(text.read_text(encoding="utf-8") for text in texts)])
 
 
 @functools.lru_cache(maxsize=256)

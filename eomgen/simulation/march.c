@@ -572,13 +572,18 @@ void march_look(struct march *m, size_t count, const double *times, double *g)
     }
 }
 
-/* the same at the looks into it */
-static void look(struct march *m, double *times)
+static void look_times(const struct march *m, double *times)
 {
     double near = EDGE*(m->t - m->t_old)/PARTS;
     times[0] = m->t_old, times[1] = m->t_old + near, times[LOOKS - 2] = m->t - near, times[LOOKS - 1] = m->t;
     for (int i = 1; i < PARTS; i++)
         times[i + 1] = m->t_old + i*((m->t - m->t_old)/PARTS);
+}
+
+/* the same at the looks into it */
+static void look(struct march *m, double *times)
+{
+    look_times(m, times);
     march_look(m, LOOKS, times, m->looks);
 }
 
@@ -719,10 +724,41 @@ static int is_calm(struct march *m)
 
 /* -- all of it ---------------------------------------------------------------------------------------------------- */
 
+/* What is left to do about a step that nothing ends: the states at instants in it, ties, its track; GOES_ON, or why not. */
+static int done_with(struct march *m)
+{
+    size_t n = m->n, next = m->next;
+    for (; next < m->n_instants && m->instants[next] <= m->t; next++) {
+        between(m, m->instants[next], m->rows + next*n);
+        if (held(m, m->instants[next], m->rows + next*n, m->atol) == STAYS_OPEN)
+            return LOOK;
+    }
+    memcpy(m->room, m->x, n*sizeof *m->x);
+    int moved = held(m, m->t, m->room, m->atol);
+    if (moved == STAYS_OPEN)
+        return LOOK;
+    m->next = next;
+    if (moved == MOVED) {
+        memcpy(m->x, m->room, n*sizeof *m->x);
+        CALL(&m->rate, m->t, m->x, m->f);
+        m->evaluations++, m->has_series = 0;
+    }
+    m->track_t[m->tracked] = m->t;
+    memcpy(m->track_x + m->tracked++*n, m->x, n*sizeof *m->x);
+    if (m->t >= m->end)
+        return REACHED;
+    if (m->is_auto && is_to_change(m)) {
+        if (!m->is_implicit)
+            return STIFF;
+        m->is_implicit = m->has_slope_values = 0, m->most_seen *= 2;
+    }
+    return GOES_ON;
+}
+
 /* Steps until one is to be looked at, the end is reached, or `most` are taken; how many were taken is left in it. */
 int march(struct march *m, size_t *most)
 {
-    size_t n = m->n, allowed = *most;
+    size_t allowed = *most;
     m->tracked = *most = 0;
     while (*most < allowed) {
         if (!(m->is_implicit ? stepped_implicitly(m) : m->order ? stepped_by_series(m) : stepped(m)))
@@ -730,31 +766,9 @@ int march(struct march *m, size_t *most)
         ++*most;
         if (!is_calm(m))
             return LOOK;
-        size_t next = m->next;
-        for (; next < m->n_instants && m->instants[next] <= m->t; next++) {
-            between(m, m->instants[next], m->rows + next*n);
-            if (held(m, m->instants[next], m->rows + next*n, m->atol) == STAYS_OPEN)
-                return LOOK;
-        }
-        memcpy(m->room, m->x, n*sizeof *m->x);
-        int moved = held(m, m->t, m->room, m->atol);
-        if (moved == STAYS_OPEN)
-            return LOOK;
-        m->next = next;
-        if (moved == MOVED) {
-            memcpy(m->x, m->room, n*sizeof *m->x);
-            CALL(&m->rate, m->t, m->x, m->f);
-            m->evaluations++, m->has_series = 0;
-        }
-        m->track_t[m->tracked] = m->t;
-        memcpy(m->track_x + m->tracked++*n, m->x, n*sizeof *m->x);
-        if (m->t >= m->end)
-            return REACHED;
-        if (m->is_auto && is_to_change(m)) {
-            if (!m->is_implicit)
-                return STIFF;
-            m->is_implicit = m->has_slope_values = 0, m->most_seen *= 2;
-        }
+        int found = done_with(m);
+        if (found != GOES_ON)
+            return found;
     }
     return GOES_ON;
 }

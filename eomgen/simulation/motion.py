@@ -14,10 +14,12 @@ from eomgen.errors import DerivationError, RunFailed, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import PLACE
 from eomgen.mechanics.dynamics import SMOOTH, EquationsOfMotion, signs_of_rates
+from eomgen.simulation.compiled_phases import CompiledPhases, compiled_phases
 from eomgen.simulation.contacts import Configuration
 from eomgen.simulation.departure import RestDeparture
 from eomgen.simulation.event_location import TOUCH, Events, nodes_between, transform
 from eomgen.simulation.integrator import Run, Stepping, march
+from eomgen.simulation.many_runs import MOST_AT_INSTANT
 from eomgen.simulation.phase_change import PhaseStart, next_start
 from eomgen.simulation.phase_model import PhaseModel
 from eomgen.simulation.phase_models import PhaseModels, one_phase
@@ -32,7 +34,6 @@ from eomgen.symbolic.print import to_text
 LOOK_PHASES = 1000  # from one look at how fast they follow one another to the next
 MOST_PHASES = 100_000  # that may be left to the end: about half an hour of work
 STEPS_AGAIN = 10_000  # of the finer integration across one instant
-MOST_AT_ONCE = 20  # phases that end as soon as they begin, one after the other
 
 
 @dataclass(frozen=True)
@@ -59,16 +60,24 @@ class Plan:
 
 def passed(models: PhaseModels, here: PhaseStart, plan: Plan) -> Iterator[PhaseRun]:
     """The phases one after the other; the last is the one that ends with the time, the condition, or in failure."""
-    ended: frozenset[Configuration] = frozenset()
-    hasty = count = 0
-    looked = here.t
+    with compiled_phases(models, plan.how) as in_c:
+        yield from _passed(models, here, plan, in_c if plan.until is None else None)
+
+
+def _passed(models: PhaseModels, here: PhaseStart, plan: Plan, in_c: CompiledPhases | None) -> Iterator[PhaseRun]:
+    """The same, each phase in C where all that it needs is there."""
+    pace = _Pace(plan, here.t)
     while True:
+        for each in () if in_c is None else in_c.through(here, plan, pace.ended):
+            yield each
+            if each.after is None:
+                return
+            pace.add(each)
+            here = each.after
+            if pace.is_looked_at:
+                break
         phase = models.of(here.configuration)
-        failure = here.failure or _hasty(phase, hasty)
-        if not failure and count == plan.how.most_phases:
-            failure = f"after {count} phases the contacts {_contacts(phase)} still change"
-        if not failure and count and count % LOOK_PHASES == 0:
-            failure, looked = _endless(phase, count, (looked, here.t, plan.end)), here.t
+        failure = here.failure or pace.failure(phase, here)
         if failure:
             yield _standstill(phase, here, failure)
             return
@@ -81,12 +90,56 @@ def passed(models: PhaseModels, here: PhaseStart, plan: Plan) -> Iterator[PhaseR
         if crossing is None or crossing.index >= len(phase.bounds):
             yield PhaseRun(here, phase, run, None, None)
             return
-        soon = run.end - here.t <= tolerances.COMPUTED
-        hasty, count = hasty + 1 if soon else 0, count + 1
-        ended = frozenset({*(ended if soon else ()), here.configuration})
-        after = next_start(models, phase, crossing, ended)
-        yield PhaseRun(here, phase, run, phase.bounds[crossing.index], after)
+        bound = phase.bounds[crossing.index]
+        pace.add(PhaseRun(here, phase, run, bound, None))
+        after = next_start(models, phase, crossing, pace.ended)
+        yield PhaseRun(here, phase, run, bound, after)
         here = after
+
+
+@dataclass
+class _Pace:
+    """Pace at which the phases of a run follow one another.
+
+    Args:
+        ended: the configurations that ended at the last instant.
+        hasty: phases that ended as soon as they began, one after the other.
+        count: of all phases that ended by an event.
+        looked: the instant of the last look [s].
+        seen: how many there were then.
+    """
+
+    plan: Plan
+    looked: float
+    ended: frozenset[Configuration] = frozenset()
+    hasty: int = 0
+    count: int = 0
+    seen: int = 0
+
+    def add(self, phase_run: PhaseRun) -> None:
+        """One phase more."""
+        here, run = phase_run.here, phase_run.run
+        if phase_run.bound is None:
+            return
+        soon = run.end - here.t <= tolerances.COMPUTED
+        self.hasty, self.count = self.hasty + 1 if soon else 0, self.count + 1
+        self.ended = frozenset({*(self.ended if soon else ()), here.configuration})
+
+    @property
+    def is_looked_at(self) -> bool:
+        """True if they are too fast, or a look at how fast they are is due."""
+        return self.hasty == MOST_AT_INSTANT or (self.count != self.seen and self.count % LOOK_PHASES == 0)
+
+    def failure(self, phase: PhaseModel, here: PhaseStart) -> str:
+        """Why no phase follows; "" where one does."""
+        if self.hasty == MOST_AT_INSTANT:
+            return f"the contacts {_contacts(phase)} change without end at one instant"
+        if self.count == self.plan.how.most_phases:
+            return f"after {self.count} phases the contacts {_contacts(phase)} still change"
+        if self.count == self.seen or self.count % LOOK_PHASES:
+            return ""
+        (looked, self.looked), self.seen = (self.looked, here.t), self.count
+        return _endless(phase, self.count, (looked, here.t, self.plan.end))
 
 
 def _until_rest(phase: PhaseModel, here: PhaseStart, plan: Plan) -> tuple[Run, PhaseStart | None]:
@@ -207,11 +260,6 @@ def _determined(phase: PhaseModel, run: Run, how: Stepping) -> Run:
 
 def _finer(tolerance: float) -> float:
     return max(tolerance / 1000, tolerances.FINEST_RUN)
-
-
-def _hasty(phase: PhaseModel, hasty: int) -> str:
-    """Message that phases follow one another without time passing; "" where they do not."""
-    return f"the contacts {_contacts(phase)} change without end at one instant" if hasty == MOST_AT_ONCE else ""
 
 
 def _endless(phase: PhaseModel, count: int, instants: tuple[float, float, float]) -> str:

@@ -59,11 +59,12 @@ class PhaseStart:
             DerivationError: the constraints do not hold at the start.
         """
         key = t, tuple((parameters or {}).items()), tuple((start or {}).items())
-        if key not in models.starts:
-            if len(models.starts) >= MOST_STARTS:
-                models.starts.clear()
-            models.starts[key] = _at_start(models, t, parameters, start)
-        found: PhaseStart = models.starts[key]
+        starts = models.known["starts"]
+        if key not in starts:
+            if len(starts) >= MOST_STARTS:
+                starts.clear()
+            starts[key] = _at_start(models, t, parameters, start)
+        found: PhaseStart = starts[key]
         return found
 
     def after_jump(self, models: PhaseModels) -> PhaseStart:
@@ -169,6 +170,15 @@ def _closed_or_open(
         name for name, (gap, rate) in models.without_contacts.gaps(t, free).items() if _apart(models, gap, rate, free)
     )
     return values(away), away
+
+
+def contacts_away(models: PhaseModels, t: float, start: Mapping[str, float]) -> tuple[str, ...]:
+    """The contacts that are open at a start.
+
+    Raises:
+        DerivationError: the constraints do not hold there.
+    """
+    return _closed_or_open(models, t, {}, None, start)[1]
 
 
 def plain(model: Model, pieces: Mapping[str, int], away: Sequence[str]) -> Configuration:
@@ -339,7 +349,7 @@ def settled(
     refused: list[DerivationError] = []
     resting = [c for c in contacts if c.size is not None and not sliding[c.name]]
     first = next(_choices(contacts, apart, sliding, before))
-    gauss = _by_gauss(phase_models, t, values, Configuration(Table(first), Table(pieces)), resting)
+    gauss = by_gauss(phase_models, t, values, Configuration(Table(first), Table(pieces)), resting)
     tries = chain(gauss, islice(_choices(contacts, apart, sliding, before), MOST_TRIED))
     rivals: list[Configuration] = []
     static = [c for c in contacts if isinstance(c.friction, JointFriction) and not sliding[c.name]]
@@ -378,7 +388,7 @@ def settled(
 # the combinations that agree are counted, and several are named.
 
 
-def _by_gauss(
+def by_gauss(
     phase_models: PhaseModels, t: float, values: Values, near: Configuration, resting: Sequence[Contact]
 ) -> list[dict[str, ContactMode]]:
     """The modes of all contacts with those of several resting joints by Gauss's principle; [] where fewer rest."""

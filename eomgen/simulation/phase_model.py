@@ -34,8 +34,7 @@ from eomgen.simulation.constraint_drift import (
     projection_of,
     undetermined_of,
 )
-from eomgen.simulation.contacts import Configuration, ContactEvents, ContactSignals, EventFunction
-from eomgen.simulation.phase_functions import PhaseFunctions
+from eomgen.simulation.contacts import Configuration, ContactEvents, ContactSignals, EventFunction, PhaseFunctions
 from eomgen.simulation.solvers import StateRate
 from eomgen.symbolic.expression import Node, depends_on, jacobian
 from eomgen.symbolic.numeric import FLOAT, evaluate, tolerances

@@ -71,17 +71,18 @@ class Slides:
     def with_parameters(self, p: np.ndarray) -> Slides:
         """The same at other values of the parameters."""
         found = replace(self, p=p)
-        vars(found)["_velocities"] = self._velocities
+        vars(found)["velocities"] = self.velocities
         return found
 
     def at(self, t: float, values: Values) -> dict[str, float]:
         """The sliding velocity of each contact."""
         x = np.array([values.get(node.name, 0.0) for node in self.system.symbols.x])
-        found = self._velocities.many(np.array([t]), x[None, :], self.p)[0]
+        found = self.velocities.many(np.array([t]), x[None, :], self.p)[0]
         return {contact.name: float(v) for contact, v in zip(self.contacts, found, strict=True)}
 
     @cached_property
-    def _velocities(self) -> RightHandSide:
+    def velocities(self) -> RightHandSide:
+        """Function of them."""
         scalars = tuple(sliding_velocity(self.system, contact) for contact in self.contacts)
         return RightHandSide.of(Program.of(scalars, self.system.symbols, inputs=self.system.inputs), "numpy")
 
@@ -112,7 +113,7 @@ class PhaseModels:
         self._origin = origin
         self._made: dict[Configuration, PhaseModel] = {}
         self._last: tuple[Configuration, PhaseModel] | None = None
-        self.starts: dict[Hashable, Any] = {}  # of motions, by what they were found from
+        self.known: dict[str, dict[Hashable, Any]] = {"starts": {}, "in C": {}}  # by what they were found from
         self._slides: dict[Configuration, Slides] = {}
 
     def at(self, p: np.ndarray, fed: Fed | None = None) -> PhaseModels:
@@ -122,6 +123,16 @@ class PhaseModels:
             fed: as of PhaseModel.
         """
         return PhaseModels(self.model, p, self.target, self.rates, self._derived, (self, fed))
+
+    @property
+    def origin(self) -> PhaseModels | None:
+        """The same at the values at which its phases were derived; None of those themselves."""
+        return None if self._origin is None else self._origin[0]
+
+    @property
+    def is_fed(self) -> bool:
+        """True if a Python function changes the parameters along the run."""
+        return self._origin is not None and self._origin[1] is not None
 
     @property
     def only(self) -> PhaseModel:

@@ -161,7 +161,10 @@ def _reported(found: Trajectory, until: str | None) -> Trajectory:
 def _joined(models: PhaseModels, runs: Sequence[PhaseRun]) -> Trajectory:
     coordinates, speeds = _union(runs)
     states = runs[0].phase.states  # those of every phase alike
-    tables = [_table(phase_run, (*coordinates, *speeds, *states)) for phase_run in runs]
+    names = (*coordinates, *speeds, *states)
+    phases = {id(phase_run.phase): phase_run.phase for phase_run in runs}
+    as_they_are = {key for key, phase in phases.items() if phase.moving == names and not phase.loose}
+    tables = [s.run.x if id(s.phase) in as_they_are else _table(s, names) for s in runs]
     ends = [0, *accumulate(len(phase_run.run.t) for phase_run in runs)]
     return Trajectory(
         t=np.concatenate([phase_run.run.t for phase_run in runs]),
@@ -187,8 +190,6 @@ def _joined(models: PhaseModels, runs: Sequence[PhaseRun]) -> Trajectory:
 def _table(phase_run: PhaseRun, names: tuple[str, ...]) -> np.ndarray:
     """States of a phase over the names of all, n x names."""
     phase, t, x = phase_run.phase, phase_run.run.t, phase_run.run.x
-    if names == phase.moving and not phase.loose:
-        return x
     found = phase.columns(t, x)
     none = np.zeros(len(t))
     return np.array([found.get(name, none) for name in names]).reshape(-1, len(t)).T
@@ -196,8 +197,9 @@ def _table(phase_run: PhaseRun, names: tuple[str, ...]) -> np.ndarray:
 
 def _union(runs: Sequence[PhaseRun]) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Coordinates and speeds of all phases, each in the order in which it comes."""
-    coordinates = dict.fromkeys(name for phase_run in runs for name in phase_run.phase.coordinates)
-    speeds = dict.fromkeys(name for phase_run in runs for name in phase_run.phase.shown)
+    phases = {id(phase_run.phase): phase_run.phase for phase_run in runs}.values()
+    coordinates = dict.fromkeys(name for phase in phases for name in phase.coordinates)
+    speeds = dict.fromkeys(name for phase in phases for name in phase.shown)
     return tuple(coordinates), tuple(speeds)
 
 

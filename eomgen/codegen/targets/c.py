@@ -6,6 +6,7 @@ The reactions alike: `NAME_reactions(..., double *out)`; inverse dynamics has th
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -236,6 +237,15 @@ def c_together(programs: Sequence[Program]) -> tuple[Functions, ...]:
 def apart(program: Program, stem: str, role: Role) -> str:
     """The functions of a program, to stand in one text with those of others."""
     return _apart(*FORM.statements(program, stem, role))
+
+
+def hidden_in_c(program: Program, stem: str) -> tuple[str, int]:
+    """(STEM_constants and STEM_evaluate of a program, which no other file sees, the number of the constants)."""
+    made, words = FORM.statements(program, stem, Role.RHS)
+    text = _apart(made, words)
+    first, last = text.index(f"void {stem}_rhs("), text.rindex("\n}") + 2
+    text = text[:first].rstrip() + text[last:]
+    return re.sub(rf"^void ({stem}_(?:constants|evaluate)\()", r"static void \1", text, flags=re.M), made.constants
 
 
 def _apart(made: Statements, words: Mapping[str, Any]) -> str:
