@@ -11,10 +11,11 @@ from __future__ import annotations
 import argparse
 import os
 import platform
+import re
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -22,7 +23,8 @@ from pathlib import Path
 import numpy as np
 
 import eomgen
-from eomgen.simulation import integrator
+from eomgen.simulation import integrator, motion
+from eomgen.simulation.compiled_phases import BorrowedPhases
 
 MODELS = Path(__file__).parent.parent / "models"
 START, TIME, SAMPLES = [2.0, 0.5, 0.0, 0.0], 10.0, 101
@@ -402,10 +404,155 @@ def peers() -> str:
     return ", ".join(found)
 
 
+# -------- phases --------------------------------------------------------------------------------------------------
+
+
+FALL, E = (2 * 1.0 / G) ** 0.5, 0.6  # of models/bouncing_ball.toml
+
+
+def without(name: str) -> eomgen.Model:
+    """The same model without its contacts."""
+    text = (MODELS / f"{name}.toml").read_text(encoding="utf-8").split("[outputs]")[0]
+    for pattern in (r", friction = \{[^}]*\}", r"\[constraints.*?\n\n", r"limits = .*\n", r"restitution = \"e\"\n"):
+        text = re.sub(pattern, "", text, flags=re.S if "constraints" in pattern else 0)
+    return eomgen.loads(text)
+
+
+THROUGH_PHASES = {  # seconds, and of many runs what differs from run to run
+    "stick_slip": (10.0, ("parameters", "v", 0.05, 0.2)),
+    "bouncing_ball": (1.7, ("start", "y", 0.5, 1.5)),
+    "pendulum_on_stop": (3.0, ("start", "q", 0.5, 1.5)),
+}
+
+
+def phase_rows() -> Iterator[str]:
+    """Runs whose contacts change: in C, by the loop over phases in Python that it replaces, and the same model without
+    its contacts."""
+    yield "| motion, rtol 1e-9 | phases | in C [ms] | phases in Python | without contacts [ms] | times without |"
+    yield "|---|---|---|---|---|---|"
+    for name, (seconds, _) in THROUGH_PHASES.items():
+        yield _phase_row(f"{name}, {seconds:g} s", MODELS / f"{name}.toml", without(name), seconds)
+    free = re.sub(r"floor = .*\n", "", BLOCK.replace("constraints.floor", "floor"))
+    yield _phase_row("block on a rough floor, 10 s", eomgen.loads(BLOCK), eomgen.loads(free), 10.0)
+
+
+def _phase_row(words: str, model: object, free: object, seconds: float) -> str:
+    simulate, plain = eomgen.simulator(model, target="c"), eomgen.simulator(free, target="c")
+    phases = len(simulate(seconds).phases)
+    took, alone = cpus([lambda: simulate(seconds), lambda: plain(seconds)], calls=20, seconds=10)
+    kept, motion.compiled_phases = motion.compiled_phases, lambda *_: BorrowedPhases([], None)
+    slow = cpu(lambda: simulate(seconds), calls=3)
+    motion.compiled_phases = kept
+    return (
+        f"| {words} | {phases} | {1e3 * took:.2f} | {slow / took:.0f} times as long | {1e3 * alone:.2f} "
+        f"| {took / alone:.1f} |"
+    )
+
+
+def phase_batches() -> Iterator[str]:
+    """10 000 runs whose contacts change, one thread, beside 10 000 of the same model without contacts; of some of them
+    the largest difference from the run alone."""
+    yield "| 10 000 runs, rtol 1e-9 | CPU [s] | without contacts [s] | times | off the run alone |"
+    yield "|---|---|---|---|---|"
+    for name, (seconds, (kind, key, low, high)) in THROUGH_PHASES.items():
+        values = np.linspace(low, high, 10_000)
+        models = eomgen.load(MODELS / f"{name}.toml"), without(name)
+
+        def run(model, seconds=seconds, kind=kind, key=key, values=values):
+            return eomgen.simulate_many(model, time=seconds, **{kind: {key: values}})
+
+        took, alone = cpus([lambda m=model: run(m) for model in models], calls=1, seconds=60)
+        found, one, off = run(models[0]), eomgen.simulator(models[0]), 0.0
+        for k in range(0, len(values), 2500):
+            single = one(seconds, **{kind: {key: float(values[k])}}, samples=found.t.tolist())
+            off = max(off, float(np.max(np.abs(found.x[k] - single.x))))
+        yield f"| {name}, {seconds:g} s | {took:.3f} | {alone:.3f} | {took / alone:.1f} | {off:.0e} |"
+
+
+def height(t: float) -> float:
+    """y(t) of the bouncing ball, in closed form: flights of 2 e^k sqrt(2 h/g)."""
+    begun, v = -FALL, G * FALL
+    while begun + 2 * v / G <= t:
+        begun, v = begun + 2 * v / G, E * v
+    return v * (t - begun) - G / 2 * (t - begun) ** 2
+
+
+def ball_rows() -> Iterator[str]:
+    """The bouncing ball for 1.7 s beside MuJoCo, which takes fixed steps and pushes by springs and dampers: largest
+    error of the height at 101 instants, against the closed form, and of the instant of the third impact. Its damping is
+    tuned so that the first impact returns e."""
+    instants = np.linspace(0, 1.7, 101)
+    exact = np.array([height(t) for t in instants])
+    third = FALL * (1 + 2 * E + 2 * E * E)
+    yield "| rival | error of the height [m] | of the third impact [s] | CPU [ms] | times the first |"
+    yield "|---|---|---|---|---|"
+    simulate = eomgen.simulator(MODELS / "bouncing_ball.toml", target="c")
+    run = simulate(1.7, samples=instants.tolist())
+    first = cpu(lambda: simulate(1.7, samples=instants.tolist()), calls=20)
+    errors = float(np.max(np.abs(run["y"] - exact))), abs(run.impacts[2].t - third)
+    yield f"| eomgen.simulator, rtol 1e-9 | {errors[0]:.0e} | {errors[1]:.0e} | {1e3 * first:.2f} | 1.0 |"
+    try:
+        import mujoco
+    except ImportError:
+        yield "| MuJoCo | not installed here | | | |"
+        return
+    for step in (1e-3, 1e-4, 1e-5):
+        found, impacts, took = _by_mujoco(mujoco, step, instants)
+        errors = float(np.max(np.abs(found - exact))), abs(impacts[2] - third) if len(impacts) > 2 else np.nan
+        yield (
+            f"| MuJoCo {mujoco.__version__}, steps of {step:g} s | {errors[0]:.0e} | {errors[1]:.0e} "
+            f"| {1e3 * took:.1f} | {took / first:.0f} |"
+        )
+
+
+def _by_mujoco(mujoco, step: float, instants: np.ndarray) -> tuple[np.ndarray, list[float], float]:
+    """(heights, instants of impacts, CPU): a contact lasts some 15 steps, its damping is sought that returns e of the
+    speed of the first impact."""
+    low, high = 0.0, 1.0
+    for _ in range(20):
+        damping = (low + high) / 2
+        low, high = (damping, high) if _returned(mujoco, step, damping) > E else (low, damping)
+    model, data = _falling(mujoco, step, (low + high) / 2)
+    found, impacts, begun = [], [], time.process_time()
+    for t in instants:
+        while data.time < t - step / 2:
+            before = data.ncon
+            mujoco.mj_step(model, data)
+            if data.ncon and not before:
+                impacts.append(data.time)
+        found.append(1 + data.qpos[0])
+    return np.array(found), impacts, time.process_time() - begun
+
+
+def _falling(mujoco, step: float, damping: float):
+    k = (0.2 / step) ** 2
+    contact = f'solref="{-k} {-2 * damping * k**0.5}" solimp="0.9999 0.9999 0.001" condim="1"'
+    model = mujoco.MjModel.from_xml_string(f"""<mujoco>
+      <option timestep="{step}" gravity="0 0 {-G}" integrator="RK4"/>
+      <worldbody><geom type="plane" size="5 5 1" {contact}/><body pos="0 0 1"><joint type="slide" axis="0 0 1"/>
+      <geom type="sphere" size="0.1" mass="0.5" pos="0 0 0.1" {contact}/></body></worldbody></mujoco>""")
+    return model, mujoco.MjData(model)
+
+
+def _returned(mujoco, step: float, damping: float) -> float:
+    """The share of the speed with which the ball leaves its first contact."""
+    model, data = _falling(mujoco, step, damping)
+    data.qpos[0] = -0.99
+    data.qvel[0] = -((2 * G * 0.99) ** 0.5)
+    came = data.qvel[0]
+    while data.ncon == 0 and data.time < 1:
+        came = data.qvel[0]
+        mujoco.mj_step(model, data)
+    while data.ncon and data.time < 1:
+        mujoco.mj_step(model, data)
+    return -data.qvel[0] / came
+
+
 def main() -> None:
     words = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     words.add_argument("-o", "--output", type=Path)
     words.add_argument("--reference", action="store_true")
+    words.add_argument("--phases", action="store_true", help="only motions whose contacts change, put into the file")
     requested = words.parse_args()
     if requested.reference:
         import mpmath as mp
@@ -416,15 +563,31 @@ def main() -> None:
     reported = (
         f"`python benchmarks/integration.py`; Python {platform.python_version()}, {platform.machine()}; {peers()}."
     )
-    lines = ["# Integration against peers", "", f"{reported} CPU time, all in one run; trust the ratios.", ""]
-    for rows in (single_rows, own_rows, many_rows, long_rows, command_rows):
+    begun = ["# Integration against peers", "", f"{reported} CPU time, all in one run; trust the ratios.", ""]
+    parts = (phase_rows, phase_batches, ball_rows)
+    if requested.phases:
+        kept = requested.output.read_text(encoding="utf-8") if requested.output else ""
+        begun = [kept.partition(f"\n{PHASES}\n")[0].rstrip(), ""]
+    else:
+        begun += lines_of((single_rows, own_rows, many_rows, long_rows, command_rows))
+    lines = [*begun, PHASES, "", f"{reported}", "", *lines_of(parts)]
+    if requested.output:
+        requested.output.write_text("\n".join(lines).rstrip() + "\n")
+
+
+PHASES = "## Where contacts change"
+
+
+def lines_of(sections: Sequence[Callable[[], Iterator[str]]]) -> list[str]:
+    """Tables under what they show."""
+    lines: list[str] = []
+    for rows in sections:
         lines += [" ".join((rows.__doc__ or "").split()), ""]
         for row in rows():
             lines.append(row)
             print(row, flush=True)
         lines.append("")
-    if requested.output:
-        requested.output.write_text("\n".join(lines))
+    return lines
 
 
 if __name__ == "__main__":
