@@ -316,7 +316,7 @@ def test_statics_gives_the_range_of_rest():
     (found,) = ranges(HINGE.replace("start = 1 ", "start = 0.1 ").replace("T_c = 1", "T_c = 2"))
     assert found["high"] == pytest.approx(math.asin(4 / G), abs=1e-12)
     assert ranges(RAMP.replace("speed = -1", "speed = 0")) == [
-        {"name": "s", "low": None, "high": None, "condition": "tan(alpha) <= mu_s", "nowhere": False}
+        {"name": "s", "low": None, "high": None, "condition": "tan(alpha) <= mu_s", "extent": "anywhere"}
     ]
 
 
@@ -352,7 +352,30 @@ def test_the_range_of_rest_beside_a_start_that_slides():
     printed = str(eomgen.statics(eomgen.loads(SPRING)).render("text"))
     assert f"{100 * ends[0]:.10g} cm" in printed and f"{100 * ends[1]:.10g} cm" in printed
     (found,) = ranges(SPRING.replace('"k"', "0").replace(" k = 500,", ""))
-    assert (found["low"], found["high"], found["nowhere"]) == (None, None, True)
+    assert (found["low"], found["high"], found["extent"]) == (None, None, "nowhere")
+
+
+TOGGLE = """
+eomgen = 1
+space = "plane"
+parameters = { l = 0.3, F = 100, W = 800, mu = 0.15 }
+coordinates = { q = { start = 10, unit = "deg" }, y = { dependent = true, near = 0.59 } }
+bodies.low = { points = { knee = ["l", 0] }, joint = { kind = "revolute", angle = "pi/2 - q" } }
+bodies.high = { points = { top = ["l", 0] }, joint = { kind = "revolute", on = "low.knee", angle = "2*q" } }
+forces.push = { kind = "force", point = "low.knee", force = ["-F", 0] }
+constraints.head = { kind = "pin", points = ["high.top", "press.origin"] }
+[bodies.press]
+mass = 5
+joint = { kind = "prismatic", axis = [0, 1], displacement = "y", force = "-W", friction = { coefficient = "mu" } }
+"""
+
+
+def test_a_narrow_range_of_rest_of_a_toggle_is_found():
+    """F/(2 tan q) = W -+ mu F/2, a range of 0.07 deg, which the head follows."""
+    (found,) = ranges(TOGGLE)
+    assert (found["name"], found["extent"]) == ("q", "between")
+    ends = [math.atan(50 / (800 + sign * 7.5)) for sign in (1, -1)]
+    assert (found["low"], found["high"]) == pytest.approx(tuple(ends), rel=1e-9)
 
 
 def test_each_variable_of_a_sleeve_sticks_by_itself():

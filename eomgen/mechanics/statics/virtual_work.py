@@ -10,7 +10,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, partial
+from itertools import pairwise
+from typing import Literal
 
 from eomgen.errors import DerivationError, ExpressionError, UsageError
 from eomgen.frozen import dataclass
@@ -499,16 +501,15 @@ def _value(statics: StaticReactions, name: str) -> Scalar | None:
 # -------- ranges of rest --------------------------------------------------------------------------------------
 # System whose contacts and joints with dry friction stick -> RestRange: how far it stays at rest.
 #
-#     abs(F)/N <= mu_s of a contact or slide, mu_s r of a hinge;   abs(F) <= F_s of a joint with friction of
-# constant size
+#     abs(F)/N <= mu_s of a contact or slide, mu_s r of a hinge;   abs(F) <= F_s where its size is constant
 #
 # F is the friction that holds at rest, a function of the coordinates. The limits of a coordinate are where a
-# condition
-# ends, the others as they stand: from there on motion begins.
+# condition ends, the others as they stand: from there on motion begins.
 
 
 STEPS = 400  # of the search to each side
 FURTHEST = 1e4  # of a displacement [m]
+OfPlace = Callable[[float], float]
 
 
 @dataclass(frozen=True)
@@ -534,16 +535,16 @@ class RestRange:
 
     Args:
         name: of a coordinate; of a contact, in a structure without coordinates.
-        low, high: of the coordinate, in SI; of the contact's friction. None: no limit, or no values.
+        low, high: of the coordinate, in SI; of the contact's friction. None: no limit on that side, or no values.
         condition: as formulas.
-        nowhere: True if no place of the coordinate is one of rest while the others stand as they do.
+        extent: of a coordinate while the others stand as they do; "unknown" where something has no value.
     """
 
     name: str
     low: float | None
     high: float | None
     condition: str
-    nowhere: bool = False
+    extent: Literal["between", "anywhere", "nowhere", "unknown"] = "between"
 
 
 def ranges_of_rest(system: System) -> tuple[RestRange, ...]:
@@ -552,7 +553,8 @@ def ranges_of_rest(system: System) -> tuple[RestRange, ...]:
     if not found:
         return ()
     words = {each.contact: _in_formulas(system, each) for each in found}
-    places = [q for q in system.symbols.q if not system.scope.model.coordinates[q.name].driven]
+    declared = system.scope.model.coordinates
+    places = [q for q in system.symbols.q if not (declared[q.name].driven or declared[q.name].dependent)]
     if not places:
         return tuple(_of_contact(system, each, words[each.contact]) for each in found)
     return tuple(_of_coordinate(system, q, found, words) for q in places)
@@ -604,9 +606,6 @@ def _magnitude(parts: Sequence[Scalar]) -> Scalar:
     return parts[0] if len(parts) == 1 else sqrt(sum((x * x for x in parts), start=0))
 
 
-# -- in words ----------------------------------------------------------------------------------------
-
-
 def _in_formulas(system: System, condition: StickCondition) -> str:
     """tan(alpha) <= mu, abs(m*g*l*sin(q)/2) <= T_s"""
     ratio = condition.ratio
@@ -644,24 +643,45 @@ def _of_coordinate(
     said = " and ".join(dict.fromkeys(words[c.contact] for c in mine))
     starts = {node: _number(system, x, {}) for node, x in system.scope.start_values().items()}
     here = {node: x for node, x in starts.items() if x is not None}
-    if q not in here:
-        return RestRange(q.name, None, None, said)
-    margins = tuple(c.most - function("abs", c.ratio) for c in mine)
+    follows = [x for x in system.symbols.q if system.scope.model.coordinates[x.name].dependent]
 
-    def margin(x: float) -> float:
-        found = [_number(system, each, {**here, q: x}) for each in margins]
+    def least(scalars: Sequence[Scalar], x: float) -> float:
+        found = [_number(system, each, {**here, q: x}) for each in scalars]
         return math.nan if any(each is None for each in found) else min(each for each in found if each is not None)
 
-    if math.isnan(margin(here[q])):
-        return RestRange(q.name, None, None, said)
+    margins, ratios = [c.most - function("abs", c.ratio) for c in mine], [[c.ratio] for c in mine]
+    if q not in here or any(depends_on(x, follows) for x in margins) or math.isnan(least(margins, here[q])):
+        return RestRange(q.name, None, None, said, "unknown")
     joints = (body.joint for body in system.scope.model.bodies.values() if body.joint is not None)
     ways = _ways(turns=any(q.name in angle.names for joint in joints for angle in joint.turns()))
-    outwards = (here[q] + sense * way for way in (0.0, *ways) for sense in (-1, 1))
-    inside = next((x for x in outwards if margin(x) >= -tolerances.COMPUTED), None)
+    inside = _inside(partial(least, margins), [partial(least, ratio) for ratio in ratios], here[q], ways)
     if inside is None:
-        return RestRange(q.name, None, None, said, nowhere=True)
-    ends = [_end(margin, inside, [sense * way for way in ways]) for sense in (-1, 1)]
-    return RestRange(q.name, ends[0], ends[1], said)
+        return RestRange(q.name, None, None, said, "nowhere")
+    low, high = (_end(partial(least, margins), inside, [sense * way for way in ways]) for sense in (-1, 1))
+    return RestRange(q.name, low, high, said, "anywhere" if low is None and high is None else "between")
+
+
+def _inside(margin: OfPlace, ratios: Sequence[OfPlace], start: float, ways: Sequence[float]) -> float | None:
+    """The place of rest nearest to the start; a narrow range lies about a place where no friction is needed."""
+    if margin(start) >= -tolerances.COMPUTED:
+        return start
+    found = []
+    for sense in (-1, 1):
+        for x, y in pairwise((start, *(start + sense * way for way in ways))):
+            ends = [_last(lambda z, r=r, a=x: r(z) * r(a) > 0, x, y) for r in ratios if r(x) * r(y) < 0]
+            rests = [z for z in (*ends, y) if margin(z) >= -tolerances.COMPUTED]
+            if rests:
+                found.append(rests[0])
+                break
+    return min(found, key=lambda x: abs(x - start), default=None)
+
+
+def _last(holds: Callable[[float], bool], inside: float, outside: float) -> float:
+    """The last place on a way at which something holds."""
+    for _ in range(100):
+        middle = (inside + outside) / 2
+        inside, outside = (middle, outside) if holds(middle) else (inside, middle)
+    return inside
 
 
 def _ways(*, turns: bool) -> list[float]:
@@ -671,15 +691,9 @@ def _ways(*, turns: bool) -> list[float]:
     return [FURTHEST ** (2 * k / STEPS - 1) for k in range(STEPS + 1)]
 
 
-def _end(margin: Callable[[float], float], start: float, ways: Sequence[float]) -> float | None:
+def _end(margin: OfPlace, start: float, ways: Sequence[float]) -> float | None:
     """The place where the margin becomes negative on the way from the start; None where it stays."""
-    inside = start
-    for way in ways:
-        outside = start + way
+    for inside, outside in pairwise((start, *(start + way for way in ways))):
         if margin(outside) < 0:
-            for _ in range(100):
-                middle = (inside + outside) / 2
-                inside, outside = (middle, outside) if margin(middle) >= 0 else (inside, middle)
-            return inside
-        inside = outside
+            return _last(lambda x: margin(x) >= 0, inside, outside)
     return None

@@ -312,6 +312,9 @@ def contacts_step(conditions: Sequence[RestCondition], broken: Sequence[str]) ->
     return (Step("contacts", "Contacts: FAILED" if broken else "Contacts", tuple(statements)),)
 
 
+WHERE = {"anywhere": "anywhere", "nowhere": "nowhere"}
+
+
 def ranges_step(statics: StaticReactions) -> tuple[Step, ...]:
     """Step with the limits of impending motion, where dry friction holds."""
     if not statics.ranges:
@@ -322,7 +325,7 @@ def ranges_step(statics: StaticReactions) -> tuple[Step, ...]:
         return "" if value is None else own_unit(name, value, 10)
 
     rows = tuple(
-        (each.name, "nowhere" if each.nowhere else end(each.name, each.low), end(each.name, each.high), each.condition)
+        (each.name, WHERE.get(each.extent) or end(each.name, each.low), end(each.name, each.high), each.condition)
         for each in statics.ranges
     )
     words = prose(
