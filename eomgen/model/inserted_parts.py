@@ -374,7 +374,10 @@ class _Renamed:
     def _refused(self, table: Any, key: Any, what: str) -> Refused:
         place = self.part.origin((table, key))
         told = f"'{key}' is written with {what} in the axes of the ground: its part cannot be placed"
-        return Refused(Diagnostic(place.path, told, "give it points, or `axes`"), self.part.sources[place.source])
+        fix = "place it by names of points"
+        if what == "directions":
+            fix = "place its part by `at` alone, or use what a body carries: a slider on its line, limits of a joint"
+        return Refused(Diagnostic(place.path, told, fix), self.part.sources[place.source])
 
 
 def is_one(path: DocumentPath, leaf: Leaf | None) -> bool:
