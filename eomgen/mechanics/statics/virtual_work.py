@@ -614,9 +614,6 @@ def _in_formulas(system: System, condition: StickCondition) -> str:
     return f"{text} <= {to_text(condition.most)}"
 
 
-# -- in numbers --------------------------------------------------------------------------------------
-
-
 def _number(system: System, scalar: Scalar, places: Mapping[Node, float]) -> float | None:
     """A scalar at rest in numbers; None where a parameter has no value, or it has none."""
     (given,) = substituted((scalar,), system.scope.known_exactly)
@@ -662,13 +659,13 @@ def _of_coordinate(
 
 
 def _inside(margin: OfPlace, ratios: Sequence[OfPlace], start: float, ways: Sequence[float]) -> float | None:
-    """The place of rest nearest to the start; a narrow range lies about a place where no friction is needed."""
+    """The place nearest to the start where it rests; a narrow range lies about one where no friction is needed."""
     if margin(start) >= -tolerances.COMPUTED:
         return start
     found = []
     for sense in (-1, 1):
         for x, y in pairwise((start, *(start + sense * way for way in ways))):
-            ends = [_last(lambda z, r=r, a=x: r(z) * r(a) > 0, x, y) for r in ratios if r(x) * r(y) < 0]
+            ends = [_last(r, x, y) for r in ratios if r(x) * r(y) < 0]
             rests = [z for z in (*ends, y) if margin(z) >= -tolerances.COMPUTED]
             if rests:
                 found.append(rests[0])
@@ -676,11 +673,12 @@ def _inside(margin: OfPlace, ratios: Sequence[OfPlace], start: float, ways: Sequ
     return min(found, key=lambda x: abs(x - start), default=None)
 
 
-def _last(holds: Callable[[float], bool], inside: float, outside: float) -> float:
-    """The last place on a way at which something holds."""
+def _last(function: OfPlace, inside: float, outside: float) -> float:
+    """The last place on a way at which a function has the sign that it has at its beginning."""
+    sign = -1 if function(inside) < -tolerances.COMPUTED else 1
     for _ in range(100):
         middle = (inside + outside) / 2
-        inside, outside = (middle, outside) if holds(middle) else (inside, middle)
+        inside, outside = (middle, outside) if sign * function(middle) >= 0 else (inside, middle)
     return inside
 
 
@@ -695,5 +693,5 @@ def _end(margin: OfPlace, start: float, ways: Sequence[float]) -> float | None:
     """The place where the margin becomes negative on the way from the start; None where it stays."""
     for inside, outside in pairwise((start, *(start + way for way in ways))):
         if margin(outside) < 0:
-            return _last(lambda x: margin(x) >= 0, inside, outside)
+            return _last(margin, inside, outside)
     return None
