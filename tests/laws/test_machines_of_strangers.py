@@ -60,3 +60,11 @@ def test_a_machine_of_a_stranger_gives_the_numbers_found_without_us(name, tmp_pa
 
 def test_every_machine_has_its_oracle():
     assert all(callable(getattr(oracles, name, None)) for name in MACHINES) and len(MACHINES) == 32
+
+
+@pytest.mark.slow
+def test_an_output_just_after_an_impact_is_judged_just_after_it(tmp_path):
+    """Of a pile z' = -(1 + e) mr/(mr + mp) sqrt(2 g h) after the blow, and 0 before it."""
+    model = model_of("pile_driver_answers", tmp_path)
+    assert eomgen.verify(model, "vp = -(1 + e)*mr/(mr + mp)*sqrt(2*g*h)").verdict == "right"
+    assert eomgen.verify(model, "vp = 0").verdict == "wrong"
