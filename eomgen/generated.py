@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property, partial
 from pathlib import Path
@@ -36,7 +37,7 @@ from eomgen.proof import (
 from eomgen.resources import doing
 from eomgen.simulation import PhaseIntegrator, PhaseModels
 from eomgen.study import Matrices, model_to_study
-from eomgen.symbolic.numeric import tolerances
+from eomgen.symbolic.numeric import FLOAT, NoValue, evaluate, tolerances
 from eomgen.version import __version__
 
 TESTED = 3.0  # [s] of the run with which an integrator through phases is tested
@@ -289,9 +290,15 @@ class Generated:
         x0, p0 = (() if each is None else each.tolist() for each in (self._start.x0, self._start.p0))
         states = dict(zip((x.name for x in symbols.x), x0, strict=bool(len(x0))))
         given = {name: x for name, x in zip(symbols.parameters, p0, strict=False) if x == x}
+        nodes = (*symbols.x, *symbols.parameters.values())
+        known = {symbols.t: 0.0, **dict(zip(nodes, (*x0, *p0), strict=False))}
+        inputs = self.equations.graph.system.inputs
+        if len(x0) + len(p0) == len(nodes) and len(given) == len(symbols.parameters):
+            with suppress(NoValue, ZeroDivisionError):
+                given |= dict(zip(inputs, map(float, evaluate(tuple(inputs.values()), known, FLOAT)), strict=True))
         for path, content in self.texts.items():
             if path.endswith(".fmu") and isinstance(content, bytes):
-                yield fmu_reported(content, states if len(given) == len(symbols.parameters) else {}, given)
+                yield fmu_reported(content, states if len(given) >= len(symbols.parameters) else {}, given)
 
     def _single(self, function: Written) -> Check:
         """The text in single precision, run, against its test vectors and their tolerances."""

@@ -1,7 +1,7 @@
 /* The functions of FMI 3.0 over a model's own: model exchange, and co-simulation by DOP853 with steps of its own choice.
 
    Values: reference 0 is time; then states, their rates, parameters, inputs, outputs. Until one input is set the model's
-   own laws act; from then on those that are not set are 0. */
+   own laws act; from then on those that are not set stay as they start. */
 
 #include <math.h>
 #include <stdbool.h>
@@ -30,12 +30,14 @@ struct instance {
 };
 
 static const double first_x[ROOM(STATES)] = FIRST_X, first_p[ROOM(PARAMETERS)] = FIRST_P;
+static const double first_inputs[ROOM(INPUTS)] = FIRST_INPUTS;
 
 static void begin(struct instance *m)
 {
     memset(m, 0, sizeof *m);
     memcpy(m->x, first_x, sizeof m->x);
     memcpy(m->p, first_p, sizeof m->p);
+    memcpy(m->inputs, first_inputs, sizeof m->inputs);
 }
 
 static const double *acting(const struct instance *m) { return m->acted ? m->inputs : NULL; }

@@ -17,6 +17,7 @@ import zipfile
 from collections.abc import Mapping, Sequence
 from importlib import resources
 from itertools import accumulate
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +27,7 @@ from eomgen.codegen.program import Assign, Program
 from eomgen.codegen.targets.base import Called, Description, Emitted, FileContent, Role, Target, header
 from eomgen.codegen.targets.c import CONSTANTS, apart, c_functions, c_text
 from eomgen.errors import RunFailed, ToolMissing
-from eomgen.symbolic.numeric import JUMPS, tolerances
+from eomgen.symbolic.numeric import FLOAT, JUMPS, NoValue, evaluate, tolerances
 
 ROLES = ("rhs", "outputs", "reactions")
 UNTIL_STUCK = (0.2, 0.1, 0.05, 0.02)  # s, that its own test simulates: the longest that a solver without events can
@@ -126,6 +127,7 @@ def source(stem: str, emitted: Sequence[Emitted]) -> str:
         "CONSTANTS": re.findall(CONSTANTS, parts[0])[0],
         "FIRST_X": _braces(start[0]),
         "FIRST_P": _braces(start[1]),
+        "FIRST_INPUTS": _braces(_start_of_inputs(program, *start)),
         "TOLERANCE": repr(tolerances.RUN),
         "SMALLEST": repr(tolerances.BEST),
         "TOKEN": f'"{token(stem, emitted)}"',
@@ -152,6 +154,21 @@ def _start(reported: Description, program: Program) -> tuple[Sequence[float], Se
     return (0.0,) * len(program.states), p
 
 
+def _start_of_inputs(program: Program, x: Sequence[float], p: Sequence[float]) -> list[float]:
+    """Inputs as the model's own expressions give them at the start; 0 where they have no value there."""
+    symbols = program.symbols
+    known = {symbols.t: 0.0, **dict(zip(symbols.parameters.values(), p, strict=True))}
+    known |= dict(zip(program.states, x, strict=True))
+    found = []
+    for own in program.defaults:
+        try:
+            (value,) = evaluate((own,), known, FLOAT)
+        except (NoValue, ZeroDivisionError, KeyError):
+            value = 0.0
+        found.append(float(value) if isfinite(float(value)) else 0.0)
+    return found
+
+
 def token(stem: str, emitted: Sequence[Emitted]) -> str:
     """Token that identifies the model: a digest of its code."""
     text = "\n".join(c_text(program, stem, reported.role) for program, reported in _kept(emitted))
@@ -165,7 +182,7 @@ def _variables(kept: Sequence[Emitted]) -> list[tuple[str, str, str]]:
     how = [f'causality="local" initial="exact" start="{value!r}"' for value in x]
     how += [f'causality="local" derivative="{k}"' for k in range(1, len(x) + 1)]
     how += [f'causality="parameter" variability="tunable" start="{value!r}"' for value in p]
-    how += ['causality="input" start="0.0"'] * len(symbols.inputs)
+    how += [f'causality="input" start="{value!r}"' for value in _start_of_inputs(program, x, p)]
     names = (*states, *(f"der({name})" for name in states), *symbols.parameters, *symbols.inputs)
     found = [("time", "", 'causality="independent" variability="continuous"')]
     found += [(name, reported.remarks.get(name, ""), said) for name, said in zip(names, how, strict=True)]
