@@ -644,8 +644,9 @@ static double lowest(const struct sought *of, double a, double b, double *at)
     return fmin(f, g);
 }
 
-/* the first instant of the last step at which function j has come down, as `_first`; INFINITY: none */
-static double first_fall(struct march *m, size_t j, const double *times, int *armed, double *largest)
+/* the first instant of the last step at which function j has come down, as `_first`; INFINITY: none; NaN: it dips, and is to
+   be looked for as exactly as Python does */
+static double first_fall(struct march *m, size_t j, const double *times, int *armed, double *largest, int exactly)
 {
     size_t n = m->n_events;
     double floor = m->floors[j], at;
@@ -667,8 +668,10 @@ static double first_fall(struct march *m, size_t j, const double *times, int *ar
             double before = times[i - 1] - times[i - 2], after = times[i] - times[i - 1];
             double down = (g[n] - g[0])/before, up = (here - g[n])/after;
             double curvature = (up - down)/(before + after), slope = (down*after + up*before)/(before + after);
-            if (curvature > 0 && g[n] - slope*slope/(4*curvature) <= 0.5*g[n]
-                && lowest(&of, times[i - 2], times[i], &at) < 0)
+            int dips = curvature > 0 && g[n] - slope*slope/(4*curvature) <= 0.5*g[n];
+            if (dips && exactly)
+                return NAN;
+            if (dips && lowest(&of, times[i - 2], times[i], &at) < 0)
                 return fallen(&of, times[i - 2], at);
         }
         if (here <= 0)
@@ -677,8 +680,8 @@ static double first_fall(struct march *m, size_t j, const double *times, int *ar
     return INFINITY;
 }
 
-/* the event of the last step, -1: there is none, and what is known of the functions is kept */
-static long event_in(struct march *m, double *instant)
+/* the event of the last step; -1: there is none, and what is known of the functions is kept; -2: it is not decided */
+static long event_in(struct march *m, double *instant, int exactly)
 {
     double times[LOOKS];
     int armed[MOST_EVENTS];
@@ -688,7 +691,9 @@ static long event_in(struct march *m, double *instant)
     look_times(m, times); /* `is_calm` has looked */
     for (size_t j = 0; j < m->n_events; j++) {
         largest[j] = m->largest[j];
-        double at = first_fall(m, j, times, armed + j, largest + j);
+        double at = first_fall(m, j, times, armed + j, largest + j, exactly);
+        if (isnan(at))
+            return -2;
         if (at < *instant)
             *instant = at, found = (long)j;
     }
@@ -930,8 +935,8 @@ static int marches(struct machine *k)
     if (found == LOOK) {
         if (m->is_blind)
             return LEFT;
-        long bound = m->n_events ? event_in(m, &instant) : -1;
-        if (m->is_near_watched && !is_far(m))
+        long bound = m->n_events ? event_in(m, &instant, (int)k->is_logged) : -1;
+        if (bound == -2 || (m->is_near_watched && !is_far(m)))
             return LEFT;
         if (bound >= 0)
             return ended_by(k, bound, instant);
