@@ -80,9 +80,9 @@ class Ours:
         return M, np.array(c - Q, dtype=float)
 
     def _parameters(self) -> Any:
-        from eomgen.codegen.rhs import parameter_vector
+        from eomgen.codegen.rhs import RightHandSide
 
-        return parameter_vector(self.model)
+        return RightHandSide.parameter_values(self.model)
 
 
 def legal(name: str) -> str:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from eomgen.codegen import Program, RightHandSide, parameter_vector
+from eomgen.codegen import Program, RightHandSide
 from eomgen.documents import (
     Document,
     Grid,
@@ -185,7 +185,11 @@ class Equations(Result):
         """
 
         s = self.graph.symbols
-        values = (t, *(parameter_vector(self.model) if p is None else p), *(self.start() if x is None else x))
+        values = (
+            t,
+            *(RightHandSide.parameter_values(self.model) if p is None else p),
+            *(self.start() if x is None else x),
+        )
         nodes = (s.t, *s.parameters.values(), *s.x)
         known: dict[Any, Any] = dict(zip(nodes, map(float, values), strict=True))
         own = evaluate(tuple(self.graph.inputs.values()), known, FLOAT) if inputs is None else inputs
@@ -427,7 +431,7 @@ class Equations(Result):
     def _known_values(self) -> tuple[np.ndarray | None, np.ndarray | None]:
         """(p0, x0) of the model, None where a value is missing, or the constraints do not close at the start."""
         try:
-            p = parameter_vector(self.model)
+            p = RightHandSide.parameter_values(self.model)
         except MissingValues:
             p = None
         try:

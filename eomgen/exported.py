@@ -14,7 +14,7 @@ from typing import Any
 from xml.sax.saxutils import quoteattr
 
 from eomgen import files
-from eomgen.codegen import parameter_vector
+from eomgen.codegen import RightHandSide
 from eomgen.documents import Document, Lines, plain_document
 from eomgen.errors import DerivationError, visible
 from eomgen.frozen import dataclass
@@ -30,7 +30,6 @@ from eomgen.symbolic.expression import (
     Scalar,
     Vector,
     depends_on,
-    depends_on_any,
     gradient,
     substituted,
     symbols_of,
@@ -69,7 +68,7 @@ class _Writing:
 
     def __init__(self, system: System) -> None:
         self.system = system
-        p = parameter_vector(system.scope.model)
+        p = RightHandSide.parameter_values(system.scope.model)
         self.known: dict[Any, Any] = dict(zip(system.symbols.parameters.values(), map(float, p), strict=True))
         self.known |= {system.symbols.t: 0.0}
         self.left: dict[str, list[str]] = {}
@@ -180,7 +179,7 @@ class _Writing:
                 "URDF has hinges, slides and free joints of a coordinate each", where, "take other joints"
             )
         (factor,) = self.numbers(gradient(link.s[0], (own[0],)), where)
-        uses = [each.name for each in self.system.motion.links if depends_on_any(each.s, own[:1])]
+        uses = [each.name for each in self.system.motion.links if depends_on(each.s, own[:1])]
         if abs(abs(factor) - 1) > tolerances.ROUNDING:
             what = f"URDF has no joint that goes {factor:g} times its coordinate: '{own[0].name}'"
             raise DerivationError(what, where, "give it a coordinate of its own, and an `equation` between the two")
@@ -269,7 +268,7 @@ class _Writing:
         for link in self.system.motion.links:
             efforts = () if link.joint is None else link.joint.efforts()
             drives = [scope.value(each.drive) for each in efforts if each is not None and each.drive is not None]
-            own = [x for x in self.system.symbols.q if depends_on_any(link.s, (x,))]
+            own = [x for x in self.system.symbols.q if depends_on(link.s, (x,))]
             alone = len(own) == len(drives) == 1 and drives[0] in self.system.symbols.inputs.values()
             found += [(own[0].name if alone else "", link.name)] * bool(drives)
         return found

@@ -163,7 +163,6 @@ def simulate(
         MissingValues: parameters without a value, all named.
     """
     from eomgen.runs import OUTPUTS, REACTIONS, controlled_run, controllers_of, with_controlled
-    from eomgen.simulation import SAMPLES
 
     model = model_to_study(model, parameters, start)
     controllers = controllers_of(model, inputs or {})
@@ -175,15 +174,13 @@ def simulate(
             raise UsageError("a run with controllers ends with its time", fix="leave `until` out")
         equations = derive(with_controlled(model, tuple(controllers)))
         how = Stepping(method=method, rtol=rtol, atol=atol, stabilization=stabilization)
-        instants = SAMPLES if samples is None else samples
-        found = controlled_run(equations, controllers, time=time, samples=instants, how=how, target=target)
+        found = controlled_run(equations, controllers, time=time, samples=samples, how=how, target=target)
         return _warned(model, found)
     run = recalled(
         model,
         (get_ident(), rtol, atol, target, method, stabilization),
         lambda: simulator(model, rtol=rtol, atol=atol, target=target, method=method, stabilization=stabilization),
     )
-    samples = SAMPLES if samples is None else samples
     found = run(time, samples=samples, columns=(REACTIONS, OUTPUTS), until=until)
     return _warned(model, found)
 

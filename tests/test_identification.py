@@ -28,7 +28,7 @@ from eomgen.identification.proof_of_groups import (
     spread_checked,
 )
 from eomgen.identification.regressors import Regressor, regressor_of
-from eomgen.model.replaced import with_values
+from eomgen.model.replaced import Valued
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivatives import substituted
 from tests.helpers.rx90 import PUBLISHED, rx90
@@ -265,7 +265,7 @@ def test_formulas_of_groups_hold_for_other_lengths(name):
     formulas = {g.name: g.terms for g in eomgen.regressor(model).base.groups}
     other = {p: 1.07 * float(x) for p, x in model.exact_parameters().items() if p.lower() in ("a", "b", "l", "r")}
     assert other
-    changed = eomgen.regressor(with_values(model, other, {}).model).base
+    changed = eomgen.regressor(Valued.of(model, other, {}).model).base
     values = {sympy.Symbol(p): float(x) for p, x in {**model.exact_parameters(), **other}.items()}
     for group in changed.groups:
         assert formulas[group.name].keys() == group.numbers.keys()

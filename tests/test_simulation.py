@@ -16,7 +16,7 @@ from hand_made import cart_pole, pendulum, symbols, tied_pendulum
 import eomgen
 from eomgen.cli import main
 from eomgen.codegen.program import Program
-from eomgen.codegen.rhs import RightHandSide, parameter_vector
+from eomgen.codegen.rhs import RightHandSide
 from eomgen.documents.figures import heads_in_symbols, mathtext, over_time, range_without_noise
 from eomgen.errors import UsageError, WriteFailed
 from eomgen.mechanics.dynamics import formulations as recursive
@@ -332,7 +332,7 @@ def test_ties_that_stay_independent_end_no_run():
 def test_the_derivative_of_the_right_hand_side_is_exact(name):
     """d(x')/dx against central differences: trees, dependent coordinates, redundant constraints, quaternions."""
     equations = eomgen.derive(eomgen.load(MODELS / f"{name}.toml"))
-    p, rhs, x = parameter_vector(equations.model), equations.rhs("numpy"), equations.start()
+    p, rhs, x = RightHandSide.parameter_values(equations.model), equations.rhs("numpy"), equations.start()
     x = x + 0.01 * np.sin(np.arange(len(x)) + 1.0) * (name != "four_cranks")
     slope = slope_of(equations.graph, p)
     found, h = slope(0.3, x), 1e-6

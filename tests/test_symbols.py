@@ -20,7 +20,7 @@ from eomgen.documents.figures import mathtext
 from eomgen.documents.latex import names_in, setter_of
 from eomgen.errors import ExpressionError, ModelError
 from eomgen.model.likely_mistakes import warnings_of
-from eomgen.symbolic.print.names import COMMANDS, LONGEST, SPACES, Symbol
+from eomgen.symbolic.print.names import COMMANDS, SPACES, Symbol
 
 TOKENS = (*COMMANDS, *SPACES, *"abcXYZ019_^{}'{}__", " ", ",", "+", r"\input", "$", "%", "θ", "\t")
 
@@ -55,7 +55,7 @@ def test_what_is_let_in_is_a_symbol_for_whoever_sets_it(text):
     except ExpressionError as error:
         assert 0 <= error.column <= len(text) and error.what and error.fix
         return
-    assert len(symbol.tex) > LONGEST or Symbol.parsed(symbol.tex) == symbol
+    assert len(symbol.tex) > Symbol.LONGEST or Symbol.parsed(symbol.tex) == symbol
     for tex in (symbol.tex, symbol.dotted(2), symbol.with_index("x").tex):
         assert tex.count("{") == tex.count("}")
         assert set(re.findall(r"\\(?:[a-zA-Z]+|.)", tex)) <= {*COMMANDS, *SPACES, r"\dddot"}

@@ -18,12 +18,6 @@ from eomgen.codegen.program import at_unit_norms as at_unit_norms
 
 # The letters, digits and underscores nearest to a name: 'ω₁' -> 'omega1', 'arm-7' -> 'arm_7'
 from eomgen.codegen.program import identifier as identifier
-
-# True if M is factored by operations that are written out
-from eomgen.codegen.program import is_short as is_short
-
-# q' = N u + nu
-from eomgen.codegen.program import kinematic_rates as kinematic_rates
 from eomgen.codegen.rhs import Batch as Batch
 
 # Options that are the same for all runs
@@ -40,9 +34,6 @@ from eomgen.codegen.rhs import closing_accelerations as closing_accelerations
 
 # Result of a compiler; None where there is none, or it fails: that, and what is done instead, is said once
 from eomgen.codegen.rhs import in_c as in_c
-
-# p: the value of every parameter, in the model's order
-from eomgen.codegen.rhs import parameter_vector as parameter_vector
 
 # The targets of these names, all where none are given; UsageError where there is none of a name
 from eomgen.codegen.rhs import targets_named as targets_named

@@ -21,7 +21,7 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion
 from eomgen.symbolic.exact import PlaceLists, Zeros, factorization
-from eomgen.symbolic.expression import FREE, Count, Node, Scalar, ScalarRow, Symbols, is_zero, order, substituted
+from eomgen.symbolic.expression import Count, Node, Scalar, ScalarRow, Symbols, order, substituted
 
 UNROLLED_AT_MOST = 1000  # operations of a factorization written out; a dense one of n = 12 takes 914
 
@@ -198,8 +198,8 @@ class Program:
         own = order(defaults)
         _refuse_strangers([*needed, *own], symbols, (*accelerations, *(x for each in solves for x in each.unknowns)))
         depth = _depths([*needed, *own], frozenset(symbols.parameters.values()))
-        hoisted = [x for x in needed if depth[x] == _FIXED and x.op not in FREE]
-        moving = [x for x in needed if depth[x] == _MOVING and x.op not in FREE]
+        hoisted = [x for x in needed if depth[x] == _FIXED and x.op not in Count.FREE]
+        moving = [x for x in needed if depth[x] == _MOVING and x.op not in Count.FREE]
         known = frozenset(hoisted)
         return cls(
             symbols=symbols,
@@ -221,7 +221,7 @@ class Program:
         Raises:
             DerivationError: the mass matrix is singular at all states.
         """
-        outputs = (*kinematic_rates(equations), *equations.symbols.a, *equations.state_rates)
+        outputs = (*equations.kinematic_rates, *equations.symbols.a, *equations.state_rates)
         return Program.in_motion(outputs, equations)
 
     @classmethod
@@ -236,24 +236,24 @@ class Program:
         if equations.J and not equations.friction:
             return _program(outputs, equations, Solve.bordered(equations))
         candidates = [_explicit(outputs, equations, a) for a in _explicit_accelerations(equations)]
-        if not candidates or not (equations.friction or is_short(equations)):
+        if not candidates or not (equations.friction or Program.unrolls(equations)):
             solve = _ordered(equations.M, (), equations.forcing, equations.symbols.a)
             if all(solve.operations < program.count.total for program in candidates):
                 candidates.append(_program(outputs, equations, solve))
         return min(candidates, key=lambda program: program.count.total)
 
+    @staticmethod
+    def unrolls(equations: EquationsOfMotion) -> bool:
+        """True if M is factored by operations that are written out."""
+        return factorization.operation_count(equations.M) <= UNROLLED_AT_MOST
+
 
 def _explicit_accelerations(equations: EquationsOfMotion) -> list[ScalarRow]:
     """a written out: as the formulation gives them, and by a factorization that is not too long."""
     found = [] if equations.accelerations is None else [equations.accelerations]
-    if not equations.friction and is_short(equations):
+    if not equations.friction and Program.unrolls(equations):
         found.append(factorization.factor_solution(equations.M, equations.forcing))
     return found
-
-
-def is_short(equations: EquationsOfMotion) -> bool:
-    """True if M is factored by operations that are written out."""
-    return factorization.operation_count(equations.M) <= UNROLLED_AT_MOST
 
 
 def _explicit(outputs: ScalarRow, equations: EquationsOfMotion, a: ScalarRow) -> Program:
@@ -262,18 +262,6 @@ def _explicit(outputs: ScalarRow, equations: EquationsOfMotion, a: ScalarRow) ->
 
 def _program(outputs: ScalarRow, equations: EquationsOfMotion, solve: Solve | None = None) -> Program:
     return Program.of(outputs, equations.symbols, inputs=equations.inputs, solve=solve)
-
-
-def kinematic_rates(equations: EquationsOfMotion) -> ScalarRow:
-    """q' = N u + nu"""
-    u = equations.symbols.u
-    rates = []
-    for row, value in zip(equations.N, equations.nu, strict=True):
-        for entry, speed in zip(row, u, strict=True):
-            if not is_zero(entry):
-                value = value + entry * speed
-        rates.append(value)
-    return tuple(rates)
 
 
 def _ordered(
@@ -335,7 +323,7 @@ def _depths(nodes: Iterable[Node], parameters: frozenset[Node]) -> dict[Node, in
 
 
 def _is_computed(x: Node, depth: Mapping[Node, int]) -> bool:
-    return x.op not in FREE and depth[x] != _CONSTANT
+    return x.op not in Count.FREE and depth[x] != _CONSTANT
 
 
 def _scheduled(moving: Sequence[Node], rounds: Sequence[Sequence[Solve]]) -> tuple[ProgramStatement, ...]:

@@ -24,10 +24,7 @@ from eomgen.errors import RunFailed, ToolMissing, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Rank
 from eomgen.mechanics.dynamics import EquationsOfMotion
-from eomgen.model import (
-    Model,
-    with_values,
-)
+from eomgen.model import Model, Valued
 from eomgen.resources import in_threads, pieces_of
 from eomgen.symbolic.numeric import of_one_length, tolerances
 
@@ -186,6 +183,19 @@ class RightHandSide:
                 )
         return tuple(RightHandSide.of(program, target) for program in programs)
 
+    @staticmethod
+    def parameter_values(model: Model, overrides: Mapping[str, Any] | None = None) -> np.ndarray:
+        """p: the value of every parameter, in the model's order.
+
+        Args:
+            overrides: other values: numbers in SI, or values with a unit.
+        Raises:
+            MissingValues: parameters without a value, all named.
+        """
+        if overrides and not all(isinstance(x, (int, float, np.number)) for x in overrides.values()):
+            model, overrides = Valued.of(model, overrides).model, None
+        return np.array(list(model.numeric_parameters(overrides).values()), dtype=float)
+
 
 class RateFunction:
     """(t, x) -> dx of a right-hand side; `address` is where a compiled one lies, None of others."""
@@ -235,19 +245,6 @@ def _say(line: str) -> None:
 def _wrong_length(what: str, names: tuple[str, ...], given: int) -> UsageError:
     listed = f": {', '.join(names)}" if names else ""
     return UsageError(f"{what} has {given} entries, not {len(names)}{listed}")
-
-
-def parameter_vector(model: Model, overrides: Mapping[str, Any] | None = None) -> np.ndarray:
-    """p: the value of every parameter, in the model's order.
-
-    Args:
-        overrides: other values: numbers in SI, or values with a unit.
-    Raises:
-        MissingValues: parameters without a value, all named.
-    """
-    if overrides and not all(isinstance(x, (int, float, np.number)) for x in overrides.values()):
-        model, overrides = with_values(model, overrides).model, None
-    return np.array(list(model.numeric_parameters(overrides).values()), dtype=float)
 
 
 # -------- accelerations ---------------------------------------------------------------------------------------

@@ -35,7 +35,6 @@ from eomgen.mechanics.free_bodies import (
     NamedReaction,
     Reactions,
     SystemFriction,
-    determinate_sums,
     reactions_by_sides,
 )
 from eomgen.model import PointForce, ReactionSymbols
@@ -648,7 +647,7 @@ class PrintedReactions:
         system, readings = self.equations.system, self._readings
         units = {named.name: named.unit for named in self._names}
         found = {}
-        for combination in determinate_sums(_null_space(readings, self._names)):
+        for combination in Reactions.determinate_sums(_null_space(readings, self._names)):
             terms = [
                 readable_value(readings.reader, k, system.scope.positive) * system.scope.graph.symbol(name)
                 for name, k in combination.items()

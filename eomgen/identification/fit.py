@@ -23,7 +23,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import least_squares
 
-from eomgen.codegen import Program, RightHandSide, parameter_vector
+from eomgen.codegen import Program, RightHandSide
 from eomgen.documents import Document, Lines, plain_document, prose, proven
 from eomgen.errors import UsageError
 from eomgen.files import read
@@ -165,7 +165,7 @@ def _samples(found: Regressor, data: Data, stacked: Stacked) -> StackedSamples:
     ends = np.cumsum(stacked.sizes)[:-1]
     rows = [*zip(np.split(stacked.W, ends), np.split(stacked.b, ends), strict=True)]
     own = _own_values(found)
-    pi, p = np.array([own[name] for name in found.parameters]), parameter_vector(found.model)
+    pi, p = np.array([own[name] for name in found.parameters]), RightHandSide.parameter_values(found.model)
     return StackedSamples(t, states, given, rows, pi, p.tolist())
 
 
@@ -228,7 +228,7 @@ def stacking_of(found: Regressor) -> Stacking:
     J = tuple(x for row in system.constraints.J for x in row)
     outputs = (*(x for row in found.rows for x in row), *found.known, *applied, *J)
     function = RightHandSide.of(Program.of(outputs, symbols, inputs=system.inputs, accelerations=symbols.a), "numpy")
-    size, width, p = len(symbols.u), len(found.parameters), parameter_vector(found.model)
+    size, width, p = len(symbols.u), len(found.parameters), RightHandSide.parameter_values(found.model)
 
     def stacked(data: Data) -> Stacked:
         t, states, inputs = _measured(symbols, data)
@@ -364,7 +364,7 @@ def _of_body(name: str, bodies: Sequence[str]) -> bool:
 
 def _own_values(found: Regressor) -> dict[str, float]:
     """The parameters of the model."""
-    p = parameter_vector(found.model)
+    p = RightHandSide.parameter_values(found.model)
     known = dict(zip(found.system.symbols.parameters.values(), map(float, p), strict=True))
     return dict(zip(found.parameters, map(float, evaluate(found.values, known, FLOAT)), strict=True))
 

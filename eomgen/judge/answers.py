@@ -26,7 +26,7 @@ from eomgen.judge.terms import LONG, short_text, terms_of
 from eomgen.judge.truth import Course, other_models, truth_of
 from eomgen.judge.verdict import RIGHT, UNDECIDED, WRONG, Cause, Verdict, causes_of, kind_of_equation
 from eomgen.judge.written_pages import WrittenNumber
-from eomgen.model import Output, Unit, with_values
+from eomgen.model import Output, Unit, Valued
 from eomgen.questions import Answer
 from eomgen.symbolic.expression import (
     Expression,
@@ -203,7 +203,7 @@ def _by_numbers(case: Case, written: HandEquation, kind: str, at: Instant) -> Ve
     for shares in ((1.07, 0.95, 1.02), (0.94, 1.05, 0.99)):
         values = {n: float(x) * shares[k % 3] * (1 + k / 300) for k, (n, x) in enumerate(own.items())}
         try:
-            left, right = replace(case, model=with_values(case.model, values).model).sides(written, at)
+            left, right = replace(case, model=Valued.of(case.model, values).model).sides(written, at)
         except EomgenError:
             continue
         if left.value is None or right.value is None:

@@ -45,7 +45,7 @@ from eomgen.judge.reading import MULTIPLIER, HandEquation
 from eomgen.judge.terms import WrongTerms, angles_in, short_text, term_text, terms_of
 from eomgen.judge.verdict import FUNCTION_KINDS
 from eomgen.mechanics.instant import Quantities
-from eomgen.mechanics.statics import KINDS, ActingForce, CutBalance, FreeBodies, PlacedPush
+from eomgen.mechanics.statics import ActingForce, CutBalance, FreeBodies, PlacedPush, SectionForces
 from eomgen.symbolic.expression import (
     Call,
     Fraction,
@@ -166,7 +166,7 @@ class Balances:
         quantities, calls = self.case.quantities, self.written.calls
         if self._states is None or not quantities.is_plane or any(call.name == MULTIPLIER for call in calls):
             return None
-        return quantities.free_bodies([call for call in calls if call.name in KINDS], self._states.flat)
+        return quantities.free_bodies([call for call in calls if call.name in SectionForces.KINDS], self._states.flat)
 
     @cached_property
     def _states(self) -> Samples | None:
@@ -204,7 +204,9 @@ class Balances:
         functions = Quantities(case.system, self.place, by_components)
 
         def called(call: Call) -> Scalar:
-            return case.system.scope.graph.symbol(str(call)) if call.name in KINDS else functions.value(call)
+            return (
+                case.system.scope.graph.symbol(str(call)) if call.name in SectionForces.KINDS else functions.value(call)
+            )
 
         scalar = case.evaluated(self.written.difference, case.names, called)
         return substituted((scalar,), dict(zip(symbols, self._mine, strict=True)))[0]

@@ -22,7 +22,7 @@ from eomgen.judge.reading import HandEquation
 from eomgen.judge.verdict import EXIT_CODES, RIGHT, UNDECIDED, UNREADABLE, WRONG, Verdict, kind_of_equation
 from eomgen.judge.written_pages import PageEquation, equations_of, matrix_of
 from eomgen.mechanics.dynamics import Contribution, System
-from eomgen.model import Model, with_values
+from eomgen.model import Model, Valued
 from eomgen.proof import Certificate, certify_judged
 from eomgen.symbolic.expression import Call, Expression, Scalar, ScalarRow, depends_on
 
@@ -268,7 +268,7 @@ def judged(
     Raises:
         UsageError: the only equation cannot be read.
     """
-    placed = with_values(model, None, from_rest, options=("--set", "--from-rest")).model if from_rest else model
+    placed = Valued.of(model, None, from_rest, options=("--set", "--from-rest")).model if from_rest else model
     case = Case(placed, from_rest is not None)
     judge = Judge(case, to_first_order, place_of(case, about))
     found: list[Verdict] = []

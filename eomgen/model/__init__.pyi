@@ -15,32 +15,14 @@ from eomgen.model.composite import PlacedPiece as PlacedPiece
 # Pose of a piece's frame in the body: rotated as `turned` says, then by `angle` about `axis`
 from eomgen.model.composite import pose_of as pose_of
 
-# The line of a body, on which a point stays
-from eomgen.model.constraints.base import BodyLine as BodyLine
-
 # A constraint between bodies, or between coordinates
 from eomgen.model.constraints.base import Constraint as Constraint
 
-# A line of the plane, or a plane: through `at`, in the axes of `on`; at None: where the point stands first
-from eomgen.model.constraints.base import FlatSurface as FlatSurface
-
-# The groove that a skate's edge cuts along `along` of the body `on`, in ice of a normal (ground axes; None: z)
-from eomgen.model.constraints.base import Groove as Groove
-
-# Two things that touch; `sticks`: they do not slide on one another
+# Two things that touch
 from eomgen.model.constraints.base import Meeting as Meeting
-
-# A circle or ball about `at`, in the axes of `on`; radius None: that of the shape of `on`, about its origin
-from eomgen.model.constraints.base import RoundSurface as RoundSurface
 
 # A thread, straight from stop to stop: a string or a link
 from eomgen.model.constraints.base import Thread as Thread
-
-# A point of a body: "rod.end"
-from eomgen.model.constraints.base import TouchingPoint as TouchingPoint
-
-# A ball, in the plane a disc; with an axis a thin wheel, with a tube the tyre about its rim; an ellipsoid
-from eomgen.model.constraints.base import TouchingRound as TouchingRound
 
 # Equilibrium of a node without mass: nobody declares it, and its multiplier is 0
 from eomgen.model.constraints.equation import NodeBalance as NodeBalance
@@ -157,23 +139,11 @@ from eomgen.model.joints.ball import spin_of_quaternion as spin_of_quaternion
 # Connection of a body to its parent
 from eomgen.model.joints.base import Joint as Joint
 
-# Any motion of a joint, as it is declared
+# A displacement, and a turn: of a screw both along one axis
 from eomgen.model.joints.base import Move as Move
 
 # Action along a displacement or an angle of a joint, on the child and opposite on the parent; None: nothing
 from eomgen.model.joints.base import PushAlong as PushAlong
-
-# A turn by a quaternion of norm 1, scalar first
-from eomgen.model.joints.base import QuaternionTurn as QuaternionTurn
-
-# A displacement [m] along an axis that need not have unit length
-from eomgen.model.joints.base import SlideAlong as SlideAlong
-
-# A turn by an angle [rad] about an axis that need not have unit length; None: z
-from eomgen.model.joints.base import TurnAbout as TurnAbout
-
-# A displacement along lines and arcs, end to end, the first and the last of which go on; the axes do not turn
-from eomgen.model.joints.base import WayAlongPieces as WayAlongPieces
 from eomgen.model.joints.base import Z as Z
 
 # The rotation that turns one after the other make, each about the axes that the one before left
@@ -268,9 +238,6 @@ from eomgen.model.reader import model_at as model_at
 # The warnings of a model, each at its place in the text that the model was read from
 from eomgen.model.reader import warned as warned
 
-# Examples of ranges, for messages
-from eomgen.model.replaced import LIKE as LIKE
-
 # Values that a parameter or start takes one after the other
 from eomgen.model.replaced import Range as Range
 
@@ -316,9 +283,6 @@ from eomgen.model.replaced import typed_values as typed_values
 
 # The model with other values of inputs: numbers in SI or with a unit, expressions of t and the parameters
 from eomgen.model.replaced import with_inputs as with_inputs
-
-# The model with other values of parameters and starts
-from eomgen.model.replaced import with_values as with_values
 
 # A function of time through samples, for `motion`, `rate`, `acceleration` or an input; arrays are welcome
 from eomgen.model.sampled_laws import samples as samples

@@ -33,7 +33,7 @@ from eomgen.model.part import Part, PartRule, Slot
 from eomgen.model.positions import DocumentPath
 from eomgen.model.sampled_laws import TimeLawRule
 from eomgen.symbolic.expression import Expression, Sampled
-from eomgen.symbolic.print import LONGEST, Symbol
+from eomgen.symbolic.print import Symbol
 
 ValueOf = Callable[[Expression], Any]
 """Value of an expression, in the arithmetic of the caller."""
@@ -128,7 +128,7 @@ SYMBOL = ParsedTextRule(
     Symbol.parsed,
     "a symbol",
     r"like '\theta_A' or 'J_C', in single quotes",
-    (("minLength", 1), ("maxLength", LONGEST)),
+    (("minLength", 1), ("maxLength", Symbol.LONGEST)),
 )
 
 

@@ -20,7 +20,7 @@ from eomgen.model.inserted_parts import PARTS, Expanded, ModelFile, Refused
 from eomgen.model.making import MOST_DIAGNOSTICS, diagnostics_of, draft_of, resolved
 from eomgen.model.model import Model
 from eomgen.model.positions import DocumentPath, Index, Span, index_of
-from eomgen.model.replaced import Values, with_values
+from eomgen.model.replaced import Valued, Values
 from eomgen.symbolic.expression import invisible
 
 LARGEST = 1_000_000  # bytes
@@ -66,7 +66,7 @@ def model_at(model: ModelOrPath, parameters: Values | None = None, start: Values
         ModelError: as `load`.
         UsageError: a name that there is not, a value that cannot be, a unit that does not fit.
     """
-    return with_values(model if isinstance(model, Model) else load(model), parameters, start).model
+    return Valued.of(model if isinstance(model, Model) else load(model), parameters, start).model
 
 
 def loads(text: str | bytes, name: str = "<text>", title: str = "model") -> Model:

@@ -74,72 +74,73 @@ class Valued:
     taken: tuple[Taken, ...] = ()
     start: Mapping[str, float] = Table()
 
+    @classmethod
+    def of(
+        cls,
+        model: Model,
+        parameters: Values | None = None,
+        start: Values | None = None,
+        *,
+        options: tuple[str, str] = ("parameters", "start"),
+        declared: bool = False,
+    ) -> Valued:
+        """The model with other values of parameters and starts.
 
-def with_values(
-    model: Model,
-    parameters: Values | None = None,
-    start: Values | None = None,
-    *,
-    options: tuple[str, str] = ("parameters", "start"),
-    declared: bool = False,
-) -> Valued:
-    """The model with other values of parameters and starts.
-
-    Args:
-        parameters, start: by name; of the start also rates (`theta'`) and declared speeds.
-        options: what messages call the two.
-        declared: as of Typing.
-    Raises:
-        UsageError: a name that there is not, a value that cannot be.
-    """
-    if not parameters and not start:
-        return Valued(model)
-    changed, settled = {}, []
-    model = _with_counts(model, parameters or {}, options[0])
-    typing = Typing(model, declared)
-    for name, typed in (parameters or {}).items():
-        if name not in model.parameters:
-            what = f"{options[0]}: there is no parameter '{name}'"
-            is_start = name.rstrip("'") in model.coordinates or name in (*model.speeds, *model.states)
-            near = _near(name, model.parameters)
-            raise UsageError(what, fix=f"its start is given by {options[1]}" if is_start else near)
-        found = _settled(typing, name, typed, options[0])
-        changed[name] = _with_value(model.parameters[name], "value", found.value)
-        settled.append(found)
-    made = model.altered(parameters=Table({**model.parameters, **changed}))
-    coordinates, speeds, states = dict(model.coordinates), dict(model.speeds), dict(model.states)
-    typing = Typing(made, declared)
-    for name, typed in (start or {}).items():
-        _refuse_given(model, name, options[1])
-        found = _settled(typing, name, typed, options[1])
-        settled.append(found)
-        if not declared:
-            _warn_of_turns(name, typed, found)
-        base, value = name.rstrip("'"), replace(found.value, typed=True)
-        if name in speeds:
-            speeds[name] = speeds[name].altered(start=value)
-        elif name in states:
-            states[name] = _with_value(states[name], "start", value)
-        elif name == base:
-            coordinates[name] = _with_value(coordinates[name], "start", value).altered(near=None)
-        else:
-            coordinates[base] = _with_value(coordinates[base], "speed", value)
-    changes: dict[str, Any] = {
-        "parameters": made.parameters,
-        "coordinates": Table(coordinates),
-        "speeds": Table(speeds),
-        "states": Table(states),
-    }
-    try:
-        replace(model, **changes)  # what is wrong with a model is wrong with this one
-    except ModelError as error:
-        names = ", ".join(option for option, given in zip(options, (parameters, start), strict=True) if given)
-        raise UsageError(f"{names}: {error.problems[0].what}", fix=error.problems[0].fix) from error
-    valued = model.altered(**changes)
-    taken = tuple(taken_of(valued, each) for each in settled)
-    numbers = {**valued.exact_parameters(), "pi": math.pi}
-    starts = {each.name: each.value.value_at(numbers) for each in settled if each.name in (start or {})}
-    return Valued(valued, taken, Table({name: float(x) for name, x in starts.items() if x is not None}))
+        Args:
+            parameters, start: by name; of the start also rates (`theta'`) and declared speeds.
+            options: what messages call the two.
+            declared: as of Typing.
+        Raises:
+            UsageError: a name that there is not, a value that cannot be.
+        """
+        if not parameters and not start:
+            return cls(model)
+        changed, settled = {}, []
+        model = _with_counts(model, parameters or {}, options[0])
+        typing = Typing(model, declared)
+        for name, typed in (parameters or {}).items():
+            if name not in model.parameters:
+                what = f"{options[0]}: there is no parameter '{name}'"
+                is_start = name.rstrip("'") in model.coordinates or name in (*model.speeds, *model.states)
+                near = _near(name, model.parameters)
+                raise UsageError(what, fix=f"its start is given by {options[1]}" if is_start else near)
+            found = _settled(typing, name, typed, options[0])
+            changed[name] = _with_value(model.parameters[name], "value", found.value)
+            settled.append(found)
+        made = model.altered(parameters=Table({**model.parameters, **changed}))
+        coordinates, speeds, states = dict(model.coordinates), dict(model.speeds), dict(model.states)
+        typing = Typing(made, declared)
+        for name, typed in (start or {}).items():
+            _refuse_given(model, name, options[1])
+            found = _settled(typing, name, typed, options[1])
+            settled.append(found)
+            if not declared:
+                _warn_of_turns(name, typed, found)
+            base, value = name.rstrip("'"), replace(found.value, typed=True)
+            if name in speeds:
+                speeds[name] = speeds[name].altered(start=value)
+            elif name in states:
+                states[name] = _with_value(states[name], "start", value)
+            elif name == base:
+                coordinates[name] = _with_value(coordinates[name], "start", value).altered(near=None)
+            else:
+                coordinates[base] = _with_value(coordinates[base], "speed", value)
+        changes: dict[str, Any] = {
+            "parameters": made.parameters,
+            "coordinates": Table(coordinates),
+            "speeds": Table(speeds),
+            "states": Table(states),
+        }
+        try:
+            replace(model, **changes)  # what is wrong with a model is wrong with this one
+        except ModelError as error:
+            names = ", ".join(option for option, given in zip(options, (parameters, start), strict=True) if given)
+            raise UsageError(f"{names}: {error.problems[0].what}", fix=error.problems[0].fix) from error
+        valued = model.altered(**changes)
+        taken = tuple(taken_of(valued, each) for each in settled)
+        numbers = {**valued.exact_parameters(), "pi": math.pi}
+        starts = {each.name: each.value.value_at(numbers) for each in settled if each.name in (start or {})}
+        return cls(valued, taken, Table({name: float(x) for name, x in starts.items() if x is not None}))
 
 
 def _with_counts(model: Model, parameters: Values, option: str) -> Model:
@@ -306,7 +307,6 @@ def with_inputs(model: Model, inputs: Mapping[str, Any]) -> Model:
 # Text -> Range: values of a parameter or start, "k=100:1000:10" (both ends, how many), "log:k=1:9:5", "k=0.5,1".
 
 
-LIKE = '"k=100:1000:10", "log:k=1:100:50" or "k=0.5,1,2"'
 MOST = 10_000  # values
 SHOWN = 6  # of a list, when it is said what was taken
 
@@ -320,6 +320,8 @@ class Range:
         unit: that the file declares, "" for SI; `size` of it in SI.
         taken: what was made of the text.
     """
+
+    LIKE = '"k=100:1000:10", "log:k=1:100:50" or "k=0.5,1,2"'
 
     name: str
     values: tuple[float, ...]
@@ -341,13 +343,13 @@ class Range:
         name, equals, rest = text.removeprefix("log:").partition("=")
         name = name.strip()
         if not equals:
-            raise UsageError(f"'{text}' is no range", fix=LIKE)
+            raise UsageError(f"'{text}' is no range", fix=Range.LIKE)
         refuse_what_is_not_set(model, name, starts=starts)
         typed = TypedNumbers(model, name, declared)
         try:
             values = _values(rest, logarithmic, text, typed.number)
         except ExpressionError as error:
-            raise UsageError(f"'{text}' is no range: {error.what}", fix=error.fix or LIKE) from error
+            raise UsageError(f"'{text}' is no range: {error.what}", fix=error.fix or Range.LIKE) from error
         unit, size = ("", 1.0) if typed.unit is None else (typed.unit.text, typed.unit.size)
         return cls(name, tuple(values), unit, size, _taken(typed, rest, logarithmic))
 
@@ -439,7 +441,7 @@ def refuse_what_is_not_set(model: Model, name: str, *, starts: bool) -> None:
     known = [*model.parameters, *moving]
     if name not in known:
         what = f"no parameter '{name}'" if not starts else f"no parameter, coordinate, rate or speed '{name}'"
-        raise UsageError(what, fix=nearest(name, known) or LIKE)
+        raise UsageError(what, fix=nearest(name, known) or Range.LIKE)
     if name in model.counts:
         raise UsageError(f"'{name}' counts things of the model: it has one value", fix=f"set it: {name}=5")
 
@@ -468,10 +470,10 @@ def _values(rest: str, logarithmic: bool, text: str, number: Callable[[str], flo
         start, stop, count = rest.split(":")
         low, high, n = number(start), number(stop), int(count)
     except ValueError as error:
-        raise UsageError(f"'{text}' is no range", fix=LIKE) from error
+        raise UsageError(f"'{text}' is no range", fix=Range.LIKE) from error
     if not 2 <= n <= MOST or (logarithmic and min(low, high) <= 0):
         what = "a range of powers has ends above 0" if logarithmic and min(low, high) <= 0 else f"{n} values"
-        raise UsageError(f"'{text}' is no range: {what}", fix=f"from 2 to {MOST} values, like {LIKE}")
+        raise UsageError(f"'{text}' is no range: {what}", fix=f"from 2 to {MOST} values, like {Range.LIKE}")
     _finite([low, high], text)
     shares = [k / (n - 1) for k in range(n)]
     if logarithmic:
@@ -482,7 +484,7 @@ def _values(rest: str, logarithmic: bool, text: str, number: Callable[[str], flo
 def _finite(values: list[float], text: str) -> list[float]:
     if all(math.isfinite(x) for x in values):
         return values
-    raise UsageError(f"'{text}' is no range: its values are no numbers", fix=LIKE)
+    raise UsageError(f"'{text}' is no range: its values are no numbers", fix=Range.LIKE)
 
 
 # -- requests of outputs -------------------------------------------------------------------------

@@ -16,8 +16,6 @@ from eomgen.model.joints.base import (
     Joint,
     Move,
     Scalars,
-    SlideAlong,
-    TurnAbout,
     X,
     Y,
     Z,
@@ -60,8 +58,9 @@ class DisplacedJoint(Joint):
     def moves(self) -> tuple[Move, ...]:
         names, places = self.variables(""), len(self.along)
         about = (Z,) if len(self.about) == 1 else (X, Y, Z)
-        slides = map(SlideAlong, (X, Y, Z), names[:places])
-        return (*slides, *self.placed.moves(), *map(TurnAbout, about, names[places:]))
+        slides = map(Move, (X, Y, Z), names[:places])
+        turns = (Move(axis, angle=name) for axis, name in zip(about, names[places:], strict=False))
+        return (*slides, *self.placed.moves(), *turns)
 
     def turn(self, s: Scalars, value: ValueOf) -> Any:
         return self._standing(value)[2] + (s[2] if self.about else 0)

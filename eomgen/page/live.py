@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from functools import cached_property
 from typing import Any
 
-from eomgen.codegen import Program, kinematic_rates
+from eomgen.codegen import Program
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System, mass
@@ -130,7 +130,7 @@ class Live:
 
     def _frame(self) -> tuple[Scalar, ...]:
         equations = self.study.derived
-        rates = kinematic_rates(equations)
+        rates = equations.kinematic_rates
         return (*self.scene.values, equations.T, equations.V, *rates, *self.reactions.values())
 
     @property

@@ -22,7 +22,7 @@ import numpy as np
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.instant import FIXED, BodyMotion, Kind, KinematicState, Quantities, composition_of
+from eomgen.mechanics.instant import BodyMotion, Kind, KinematicState, Mechanism, Quantities, composition_of
 from eomgen.mechanics.kinematics import JointEffort, SystemInertia
 from eomgen.model import FUNCTIONS, PointForce
 from eomgen.proof.at_a_state import NumericState
@@ -181,7 +181,7 @@ class _Proof:
     @cached_property
     def bodies(self) -> dict[str, Seen]:
         """Every body by differences."""
-        return {link.name: self._seen(link.pose) for link in self.state.system.motion.links} | {FIXED: REST}
+        return {link.name: self._seen(link.pose) for link in self.state.system.motion.links} | {Mechanism.FIXED: REST}
 
     def _seen(self, pose: Any) -> Seen:
         now, first, second = self.along([*pose.p, *(x for row in pose.R for x in row)])

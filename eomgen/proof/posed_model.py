@@ -29,20 +29,11 @@ from eomgen.mechanics.kinematics import (
 )
 from eomgen.mechanics.start import Branches
 from eomgen.model import (
-    BodyLine,
-    FlatSurface,
-    Groove,
     Joint,
     Meeting,
     Model,
     Move,
     Push,
-    QuaternionTurn,
-    RoundSurface,
-    SlideAlong,
-    TouchingPoint,
-    TurnAbout,
-    WayAlongPieces,
 )
 from eomgen.proof.in_numbers import InNumbers, direction_at
 from eomgen.proof.states import refuse_open
@@ -292,7 +283,7 @@ class _Seated(InNumbers):
 
     def wrong(self, above: _Stand, here: _Stand) -> str:
         joint = self.link.joint
-        moves = () if joint is None else (*(TurnAbout(t.axis, t.angle) for t in joint.turned or ()), *joint.moves())
+        moves = () if joint is None else joint.moves_from_parent
         place, e = self._seat, (self.one(1), Vector.ZERO)
         for move in moves:
             way, turn = self._moved(move)
@@ -328,18 +319,14 @@ class _Seated(InNumbers):
 
     def _moved(self, move: Move) -> tuple[Vector, Quaternion]:
         """(how far, how it turns)"""
-        still = (self.one(1), Vector.ZERO)
-        if isinstance(move, SlideAlong):
-            return self._typed(move.way) * self._unit(move.axis), still
-        if isinstance(move, TurnAbout):
-            half, functions = self._typed(move.angle) / 2, fifty_digits().functions
-            return Vector.ZERO, (functions["cos"](half), functions["sin"](half) * self._unit(move.axis))
-        if isinstance(move, QuaternionTurn):
+        way = self._walked(move) if move.pieces else self._typed(move.way) * self._unit(move.axis)
+        if move.quaternion is not None:
             e0, e1, e2, e3 = self.at([self.motion.scope.names[name] for name in move.quaternion])
-            return Vector.ZERO, (e0, Vector((e1, e2, e3)))
-        return self._walked(move), still
+            return way, (e0, Vector((e1, e2, e3)))
+        half, functions = self._typed(move.angle) / 2, fifty_digits().functions
+        return way, (functions["cos"](half), functions["sin"](half) * self._unit(move.axis))
 
-    def _walked(self, route: WayAlongPieces) -> Vector:
+    def _walked(self, route: Move) -> Vector:
         left, heading, functions = self._typed(route.way), self._typed(route.heading), fifty_digits().functions
         place: Vector = Vector.ZERO
         for piece in route.pieces:
@@ -466,7 +453,7 @@ class _Contact(InNumbers):
         size = 1 + touch.first.largest
         if distance.largest > tolerances.COMPUTED * size:
             return "its two points of contact are apart"
-        slip = self.velocity(self._body, touch.first) - self.velocity(self.meeting.surface.on, touch.first)
+        slip = self.velocity(self._body, touch.first) - self.velocity(self.meeting.on, touch.first)
         held = (slip,) if self.meeting.sticks else tuple(slip @ e * e for e in touch.held)
         if self._rigid and any(abs(x) > tolerances.COMPUTED * (1 + size) for part in held for x in part):
             return "its two points of contact part or slip"
@@ -504,7 +491,7 @@ class _Contact(InNumbers):
         """True if a force on the first body is not of length 1, or not in its direction."""
         along = sum((f @ e) ** 2 for e in touch.held)
         wrong: list[Any] = [f @ f - 1, along - 1 if label[0] == "n" else along]
-        if not isinstance(self.meeting.surface, BodyLine):
+        if self.meeting.line is None:
             n = touch.held[0]
             wrong += [f @ n - 1] if label == "n" else []
             if not self._space and label == "t":
@@ -517,42 +504,40 @@ class _Contact(InNumbers):
 
     @property
     def _body(self) -> str | None:
-        what = self.meeting.what
-        return self._scene.place(what.point)[0] if isinstance(what, TouchingPoint) else what.body
+        ball, point = self.meeting.ball, self.meeting.point
+        return self._scene.place(point)[0] if ball is None else ball.body
 
     @property
     def _rigid(self) -> bool:
         """True if point and surface are fixed in their bodies: else velocities of material points are others."""
-        what, surface = self.meeting.what, self.meeting.surface
-        own = self._scene.place(what.point)[1] if isinstance(what, TouchingPoint) else Vector.ZERO
-        seats = [own] if isinstance(surface, (BodyLine, Groove)) else [own, self._anchor]
+        touching = self.meeting
+        own = self._scene.place(touching.point)[1] if touching.ball is None else Vector.ZERO
+        seats = [own, self._anchor] if touching.flat or touching.round else [own]
         return not any(self.motion.moves(tuple(seat)) for seat in seats)
 
     @cached_property
     def _anchor(self) -> Vector:
         """Place `at` of the surface in its body's axes, over the graph; by default the point's place at the start."""
-        surface = self.meeting.surface
-        assert not isinstance(surface, (BodyLine, Groove))
+        surface = self.meeting.flat or self.meeting.round
+        assert surface is not None
         if surface.at is not None:
             return self._scene.ground_place(surface.at)
-        if isinstance(surface, RoundSurface):
+        if self.meeting.round is not None:
             return Vector.ZERO
-        what = self.meeting.what
-        assert isinstance(what, TouchingPoint)
-        return Vector(map(self._scene.start, self._scene.position(self._scene.place(what.point))))
+        return Vector(map(self._scene.start, self._scene.position(self._scene.place(self.meeting.point))))
 
     @property
     def _center(self) -> Vector:
         """The point, or the centre of a round surface, ground axes."""
-        what, scene = self.meeting.what, self._scene
-        place = scene.place(what.point) if isinstance(what, TouchingPoint) else scene.own_place(what.body, what.center)
+        ball, scene = self.meeting.ball, self._scene
+        place = scene.place(self.meeting.point) if ball is None else scene.own_place(ball.body, ball.center)
         return self.carried(place[0], self.vector(place[1]))
 
     @cached_property
     def _form(self) -> _Form:
         """Surface that touches; sizes that are not declared are those of the body's shape."""
-        what, scene = self.meeting.what, self._scene
-        if isinstance(what, TouchingPoint):
+        what, scene = self.meeting.ball, self._scene
+        if what is None:
             return _Form(0)
         shape = scene.shape(what.body)
         semiaxes, radius, axis, tube = what.semiaxes, what.radius, what.axis, what.tube
@@ -572,26 +557,28 @@ class _Contact(InNumbers):
 
     @property
     def _touch(self) -> Touch:
-        surface, C = self.meeting.surface, self._center
-        if isinstance(surface, Groove):
-            normal = Z if surface.normal is None else self.vector(self._scene.vector(surface.normal))
-            edge = self.carried(surface.on, self.vector(self._scene.vector(surface.along)), direction=True)
+        C, groove, line, flat = self._center, self.meeting.groove, self.meeting.line, self.meeting.flat
+        if groove is not None:
+            normal = Z if groove.normal is None else self.vector(self._scene.vector(groove.normal))
+            edge = self.carried(groove.on, self.vector(self._scene.vector(groove.along)), direction=True)
             return Touch(C, C, (direction_at(normal.cross(edge)),))
-        if isinstance(surface, BodyLine):
-            a, b = (self.carried(surface.on, self.vector(r)) for _, r in self._scene.line(surface.on))
+        if line is not None:
+            a, b = (self.carried(line, self.vector(r)) for _, r in self._scene.line(line))
             along = direction_at(b - a)
             foot = a + along @ (C - a) * along
             return Touch(C, foot, tuple(_across(along)) if self._space else (_quarter_turn(along),))
-        A = self.carried(surface.on, self.vector(self._anchor))
-        if isinstance(surface, FlatSurface):
-            normal = self.vector(self._scene.vector(surface.normal))
-            n = direction_at(self.carried(surface.on, normal, direction=True))
+        A = self.carried(self.meeting.on, self.vector(self._anchor))
+        if flat is not None:
+            normal = self.vector(self._scene.vector(flat.normal))
+            n = direction_at(self.carried(flat.on, normal, direction=True))
             P = self._lowest(C, n)
             return Touch(P, P - n @ (P - A) * n, (n,))
-        return self._on_round(surface, C, A)
+        return self._on_round(C, A)
 
-    def _on_round(self, surface: RoundSurface, C: Vector, A: Vector) -> Touch:
+    def _on_round(self, C: Vector, A: Vector) -> Touch:
         """A ball, or the section of a tyre where its centre line is nearest, on a ball or pipe about A."""
+        surface = self.meeting.round
+        assert surface is not None
         form, side = self._form, -1 if surface.inside else 1
         if form.axis is not None:
             h = C - A - (C - A) @ form.axis * form.axis
@@ -608,7 +595,7 @@ class _Contact(InNumbers):
 
     def _lowest(self, C: Vector, n: Vector) -> Vector:
         """The point of a round body that is farthest along -n."""
-        form, body = self._form, getattr(self.meeting.what, "body", None)
+        form, body = self._form, self._body
         if form.semiaxes is not None:
             axes = [self.carried(body, e, direction=True) for e in (Vector((1, 0, 0)), Y, Z)]
             x = direction_at(Vector(-s * (n @ e) for s, e in zip(form.semiaxes, axes, strict=True)))

@@ -21,7 +21,7 @@ import numpy as np
 
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics import BodyLink, SystemScene
-from eomgen.model import Couple, Element, PointForce, PushAt, PushOfMass, Shape, TouchingRound
+from eomgen.model import Couple, Element, Meeting, PointForce, PushAt, PushOfMass, Shape
 from eomgen.proof.at_a_state import NumericState
 from eomgen.proof.check import Check, Tally
 from eomgen.proof.declared_loads import placed_pushes
@@ -172,8 +172,8 @@ class _Shown(InNumbers):
         mass = self._own(link, self.picture.masses.get(name))
         if len(mass) and (wrong := self._wrong_mass(link, mass)):
             return wrong
-        for what in self._rolled(name):
-            wrong, own = self._wrong_round(link, what, own)
+        for meeting in self._rolled(name):
+            wrong, own = self._wrong_round(link, meeting, own)
             if wrong:
                 return wrong
         if not len(own):
@@ -263,14 +263,16 @@ class _Shown(InNumbers):
         outside = [what for what, place in declared.items() if np.any(place < low) or np.any(place > high)]
         return f"{outside[0]} is left out" if outside else ""
 
-    def _rolled(self, name: str) -> list[TouchingRound]:
-        """Round shapes with which a body without a shape rolls, where a constraint says how large they are."""
-        meetings = [constraint.meeting() for constraint in self.system.scope.model.constraints.values()]
-        found = [each.what for each in meetings if each is not None and isinstance(each.what, TouchingRound)]
-        return [x for x in found if x.body == name and (x.radius is not None or x.semiaxes is not None)]
+    def _rolled(self, name: str) -> list[Meeting]:
+        """Contacts with which a body without a shape rolls, where a constraint says how large it is."""
+        meetings = (constraint.meeting() for constraint in self.system.scope.model.constraints.values())
+        found = [(each, each.ball) for each in meetings if each is not None]
+        return [each for each, x in found if x and x.body == name and (x.radius is not None or x.semiaxes is not None)]
 
-    def _wrong_round(self, link: BodyLink, what: TouchingRound, own: np.ndarray) -> tuple[str, np.ndarray]:
+    def _wrong_round(self, link: BodyLink, meeting: Meeting, own: np.ndarray) -> tuple[str, np.ndarray]:
         """(message if a body is not as round as it rolls, its other drawn places): |(r - c)/h| = 1 along each axis."""
+        what = meeting.ball
+        assert what is not None
         if what.axis is not None:  # a wheel is drawn by symbols
             return "its wheel is not drawn", own
         semiaxes = what.semiaxes or (what.radius,) * 3

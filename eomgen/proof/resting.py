@@ -17,7 +17,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError, ModelError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.equilibrium import Equilibrium, StaticEquations, standing_system
+from eomgen.mechanics.equilibrium import Equilibrium, StaticEquations
 from eomgen.mechanics.linearization import FirstOrder
 from eomgen.proof.certificate import certify
 from eomgen.proof.check import Certificate, Check, attempted, checked, first_wrong, unchecked
@@ -41,7 +41,7 @@ def certify_equilibria(places: Sequence[Equilibrium]) -> Certificate:
         return Certificate(())
     balanced = (balance_check(places), _pushes_check(places))
     try:
-        first = FirstOrder.of(standing_system(places[0].statics.system))
+        first = FirstOrder.of(StaticEquations.standing(places[0].statics.system))
         equations = certify(first.equations, begins=False)
     except (ModelError, DerivationError) as error:  # a massless coordinate, say: there is rest, and no motion
         return Certificate((*balanced, unchecked(NOTHING_ACCELERATED, error.what, BY_MOTION)))
@@ -100,7 +100,7 @@ def _pushed(place: Equilibrium) -> str:
     Multipliers that stand in no equation are set to 0.
     """
     statics = place.statics
-    standing = standing_system(statics.system)
+    standing = StaticEquations.standing(statics.system)
     free = standing.free or standing
     symbols, digits = free.symbols, fifty_digits()
     known: dict[Node, Any] = free.scope.values_of_parameters(Random(3))

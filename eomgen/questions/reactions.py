@@ -37,11 +37,11 @@ from eomgen.model import (
     ModelOrPath,
     Output,
     Table,
+    Valued,
     Values,
     WrittenEquation,
     assignments,
     equation_in,
-    with_values,
 )
 from eomgen.proof import Certificate, certify_reactions
 from eomgen.questions.outputs_answered import Answers, solve
@@ -277,7 +277,7 @@ def _at_rest(model: Model, given: Values | Sequence[str]) -> Model:
         UsageError: no coordinate of that name, a driven one, or no expression of parameters.
     """
     values = positions_at_rest(model, given, '"theta=0"')
-    return with_values(model, None, values, options=("parameters", "from_rest")).model
+    return Valued.of(model, None, values, options=("parameters", "from_rest")).model
 
 
 def positions_at_rest(model: Model, given: Values | Iterable[str], example: str) -> Values:

@@ -14,7 +14,7 @@ from random import Random
 from typing import Any
 
 from eomgen.errors import EomgenError, UsageError
-from eomgen.model import Model, ModelOrPath, Valued, model_at, with_values
+from eomgen.model import Model, ModelOrPath, Valued, model_at
 from eomgen.questions.outputs_answered import solve
 from eomgen.resources import doing
 from eomgen.results import missing_values
@@ -52,7 +52,7 @@ def variant_of(model: Model, number: int) -> Valued:
                 name: _drawn(part.range or (), Random(f"{number}/{attempt}/{name}")) for name, part in ranged.items()
             }
             try:
-                valued = with_values(model, drawn, declared=True, options=("the variant", "start"))
+                valued = Valued.of(model, drawn, declared=True, options=("the variant", "start"))
                 if due <= frozenset(_answered(valued.model)):
                     named = valued.model.altered(name=f"{model.name}, variant {number}")
                     return Valued(named, valued.taken, valued.start)

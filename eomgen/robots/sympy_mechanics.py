@@ -41,7 +41,7 @@ from eomgen.symbolic.expression import (
     Node,
     Scalar,
     Vector,
-    depends_on_any,
+    depends_on,
     gradient,
     is_zero,
     pullback,
@@ -227,7 +227,7 @@ class _Energies:
         if not u:
             return ()
         nodes = [self.words.nodes[self.words.of(x)] for x in u]
-        rows = [x for x in (self._scalar(x) for x in kinematic) if depends_on_any((x,), nodes)]
+        rows = [x for x in (self._scalar(x) for x in kinematic) if depends_on((x,), nodes)]
         A = [gradient(row, nodes) for row in rows]
         flat = [x for row in A for x in row]
         rng = Random(1)

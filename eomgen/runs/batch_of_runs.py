@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen import parameter_vector
+from eomgen.codegen import RightHandSide
 from eomgen.errors import EomgenError, ExpressionError, UsageError
 from eomgen.frozen import dataclass, with_fields
 from eomgen.mechanics.start import Start
@@ -24,12 +24,12 @@ from eomgen.model import (
     Table,
     Typed,
     TypedNumbers,
+    Valued,
     are_several,
     nearest,
     seconds,
     typed_values,
     with_inputs,
-    with_values,
 )
 from eomgen.proof import Promise
 from eomgen.resources import check_patience, doing
@@ -118,9 +118,9 @@ def _planned(
     shared = [{n: v for n, v in given.items() if n not in arrays[kind]} for kind, given in (
         ("parameters", parameters), ("start", start))]  # fmt: skip
     model = with_inputs(simulator.model, {n: v for n, v in inputs.items() if n not in arrays["inputs"]})
-    model = with_values(model, *shared).model
+    model = Valued.of(model, *shared).model
     first = {kind: {n: float(v[0]) for n, v in each.items()} for kind, each in arrays.items() if kind != "inputs"}
-    with_values(model, first["parameters"], first["start"])  # refuses what there is not
+    Valued.of(model, first["parameters"], first["start"])  # refuses what there is not
     model, of_inputs = _inputs_as_parameters(model, arrays["inputs"])
     instants = instants_of(samples, 0.0, time)
     changed = replace(simulator, model=model, known=type(simulator.known)())
@@ -228,7 +228,7 @@ def _in_phases(plan: _Plan, threads: int) -> Reported | None:
     if base is None:
         return None
     parameters, start = plan.of(0)
-    models = base.models.at(parameter_vector(plan.model, parameters))
+    models = base.models.at(RightHandSide.parameter_values(plan.model, parameters))
     try:
         found = _runs_of(plan, _known(simulator)[1], threads).in_phases(models, start, base.derived, plan.start)
     except EomgenError:  # the first run says why
@@ -257,8 +257,8 @@ def _parameters(plan: _Plan) -> np.ndarray:
     names = list(model.parameters)
     follow = any(_names(part.value) & plan.parameters.keys() for part in model.parameters.values())
     if follow:
-        return np.array([parameter_vector(model, plan.of(i)[0]) for i in range(plan.runs)])
-    first = parameter_vector(model, plan.of(0)[0])
+        return np.array([RightHandSide.parameter_values(model, plan.of(i)[0]) for i in range(plan.runs)])
+    first = RightHandSide.parameter_values(model, plan.of(0)[0])
     found = np.tile(first, (plan.runs, 1))
     for name, values in plan.parameters.items():
         found[:, names.index(name)] = values

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen import parameter_vector
+from eomgen.codegen import RightHandSide
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, ExpressionError, NotYet, RunFailed, UsageError
 from eomgen.frozen import dataclass
@@ -33,7 +33,6 @@ from eomgen.model import (
     nearest,
     requested_of,
     seconds,
-    with_values,
 )
 from eomgen.proof import Certificate, checked, rows_that_stay
 from eomgen.runs.single_run import finished_run, phase_models, run
@@ -87,7 +86,7 @@ class Simulator:
         time: Typed = 10.0,
         parameters: Values | None = None,
         start: Values | None = None,
-        samples: int | Sequence[Typed] = SAMPLES,
+        samples: int | Sequence[Typed] | None = SAMPLES,
         columns: Sequence[str] = (),
         *,
         until: WrittenEquation | str | None = None,
@@ -105,7 +104,7 @@ class Simulator:
             MissingValues: parameters without a value, all named.
             UsageError: the request makes no sense.
         """
-        valued = with_values(self.model, parameters, start)
+        valued = Valued.of(self.model, parameters, start)
         equations, models = self._at(valued)
         own = {} if equations.model is valued.model else given_parameters(valued.model)
         requested = (columns,) if isinstance(columns, str) else tuple(columns)
@@ -127,7 +126,7 @@ class Simulator:
 
     def prepared(self, parameters: Values, start: Values) -> None:
         """Derives and compiles what a run from these values needs."""
-        self._at(with_values(self.model, parameters, start))
+        self._at(Valued.of(self.model, parameters, start))
 
     def _at(self, valued: Valued) -> tuple[Equations, PhaseModels]:
         """The equations, and their phases, at the values of a model."""
@@ -153,7 +152,7 @@ class Simulator:
 
     def _shared(self, valued: Valued) -> tuple[Equations, PhaseModels] | None:
         """Equations that were derived at other values, where these are the same; None where there are none."""
-        p = parameter_vector(valued.model)
+        p = RightHandSide.parameter_values(valued.model)
         for base in self.bases:
             models = base.models.at(p)
             if base.holds(models, valued):
@@ -164,7 +163,7 @@ class Simulator:
         """The equations of a model, derived at its values."""
         anew = self.is_constrained or self.keeps_start
         equations = self.derive(model) if anew else self.equations
-        models = phase_models(equations, parameter_vector(model), self.how, self.target)
+        models = phase_models(equations, RightHandSide.parameter_values(model), self.how, self.target)
         if len(self.bases) < MOST_BASES:
             self.bases.append(KnownEquations(equations, models, self.keeps_start and self._follows_start))
         return equations, models
@@ -417,7 +416,7 @@ def controlled_run(
     controllers: Mapping[str, Controller],
     *,
     time: Typed,
-    samples: int | Sequence[Typed],
+    samples: int | Sequence[Typed] | None,
     how: Stepping,
     target: str | None = None,
 ) -> Trajectory:
@@ -434,7 +433,7 @@ def controlled_run(
         raise NotYet(
             f"'{functions[0]}' is set by a Python function, and contacts change", fix="an expression, or `every`"
         )
-    models = phase_models(equations, parameter_vector(model), how, target)
+    models = phase_models(equations, RightHandSide.parameter_values(model), how, target)
     here = PhaseStart.of(models, 0.0, None, None)
     instants = instants_of(samples, 0.0, time)
     plan = Plan(time, replace(how.of_one_step(), breakpoints=model.breakpoints, keeps=True), instants)

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen import closing_accelerations, parameter_vector
+from eomgen.codegen import RightHandSide, closing_accelerations
 from eomgen.documents import Document, Grid, Picture, Statement, cell_text, plain_document, prose, proven, run_picture
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, ExpressionError, ModelError, Problem, UsageError
@@ -28,7 +28,6 @@ from eomgen.model import Model, Output, Typed, WrittenEquation, equation_in
 from eomgen.proof import ReportedRun, RunProof, run_reported
 from eomgen.resources import PatienceEnded, doing, keep_what_there_is
 from eomgen.simulation import (
-    SAMPLES,
     Accuracy,
     PhaseModels,
     PhaseRun,
@@ -79,11 +78,11 @@ def run(
         MissingValues: parameters without a value, all named.
         UsageError: the request makes no sense.
     """
-    how, samples = how or Stepping(), SAMPLES if samples is None else samples
+    how = how or Stepping()
     model = equations.model
     condition = None if until is None else _condition_of(model, until)
     refuse_bad_run(0.0, time, how)
-    models = models or phase_models(equations, parameter_vector(model, parameters), how, target)
+    models = models or phase_models(equations, RightHandSide.parameter_values(model, parameters), how, target)
     here = PhaseStart.of(models, 0.0, parameters, start)
     _refuse_fork_at_rest(models, here)
     instants = instants_of(samples, 0.0, time)
@@ -117,7 +116,7 @@ def run(
         models,
         whole,
         how,
-        None if isinstance(samples, (int, np.integer)) else instants,
+        None if samples is None or isinstance(samples, (int, np.integer)) else instants,
         until=words,
         reactions=reactions,
         outputs=outputs,
@@ -413,7 +412,7 @@ def _first_instant(equations: Equations, run: Trajectory) -> dict[str, Any]:
     phase, x = run.phases[0].model, dict(zip(run.moving, run.x[0].tolist(), strict=True))
     declared = phase.declared_equations
     state = np.array([x[node.name] for node in declared.symbols.x])
-    p = parameter_vector(equations.model)
+    p = RightHandSide.parameter_values(equations.model)
     found = closing_accelerations(declared, float(run.t[0]), state, p)
     return {"start_accelerations": found.a, "start_multipliers": found.lam}
 

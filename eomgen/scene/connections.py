@@ -16,19 +16,13 @@ from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import GROUND, BodyLink, SystemScene
 from eomgen.model import (
     ArcForm,
-    BodyLine,
     Couple,
     EllipsoidForm,
-    FlatSurface,
-    Groove,
     LineForm,
     Meeting,
     PointForce,
-    RoundSurface,
     Stop,
     Strand,
-    TouchingPoint,
-    TouchingRound,
     unit,
 )
 from eomgen.scene.bodies import gimbal_of, is_block, is_cylinder, parameters_as_drawn, seen, shaft_of, wedge_of
@@ -377,41 +371,41 @@ def _is_negative(stop: Stop) -> bool:
 def _met(system: System, meeting: Meeting, rows: Sequence[Any], of: str) -> list[Mark]:
     """Marks of a touched surface, and of the support of a point on it."""
     found = [*_surface(system, meeting, of), *_round(system, meeting)]
-    if isinstance(meeting.what, TouchingPoint) and not isinstance(meeting.surface, RoundSurface):
+    if meeting.point and meeting.round is None:
         found += _point_support(system, meeting, rows, of)
     return found
 
 
 def _surface(system: System, meeting: Meeting, of: str) -> list[Mark]:
     """The line, plane, circle or ball that is touched; nothing where a shape shows it already."""
-    surface, scope = meeting.surface, system.scope
-    frame = 0 if surface.on is None else system.motion.index[surface.on] + 1
-    if isinstance(surface, FlatSurface):
-        n = unit(scope.vector(surface.normal))
+    flat, surface, scope = meeting.flat, meeting.round, system.scope
+    frame = 0 if meeting.on is None else system.motion.index[meeting.on] + 1
+    if flat is not None:
+        n = unit(scope.vector(flat.normal))
         along = Vector((n[1], -n[0], 0)) if scope.model.space == "plane" else None
-        at = _level(system, meeting, surface)
+        at = _level(system, meeting)
         return [Mark(TrackForm(at, along, n), frame, "track", of)] if system.symbols.q and at is not None else []
-    if isinstance(surface, RoundSurface) and surface.at is not None:
+    if surface is not None and surface.at is not None:
         at = scope.ground_place(surface.at) if surface.on is None else scope.vector(surface.at)
         r = scope.value(surface.radius)
         return [Mark(ArcForm(at, r, r), frame, "track", of)]
     return []
 
 
-def _level(system: System, meeting: Meeting, surface: FlatSurface) -> Vector | None:
+def _level(system: System, meeting: Meeting) -> Vector | None:
     """A place of a flat surface, in the axes of its body: where it is said to be, else where the point starts."""
-    scene = SystemScene(system.motion)
-    if surface.at is not None:
-        return scene.ground_place(surface.at) if surface.on is None else scene.vector(surface.at)
-    if not isinstance(meeting.what, TouchingPoint):
+    scene, flat = SystemScene(system.motion), meeting.flat
+    if flat is not None and flat.at is not None:
+        return scene.ground_place(flat.at) if flat.on is None else scene.vector(flat.at)
+    if not meeting.point:
         return None
-    return Vector(map(scene.start, scene.position(scene.place(meeting.what.point))))
+    return Vector(map(scene.start, scene.position(scene.place(meeting.point))))
 
 
 def _round(system: System, meeting: Meeting) -> list[Mark]:
     """A round body that no shape shows, by the radius with which it rolls."""
-    what = meeting.what
-    if not isinstance(what, TouchingRound) or (what.radius is None and what.semiaxes is None):
+    what = meeting.ball
+    if what is None or (what.radius is None and what.semiaxes is None):
         return []
     part = system.scope.model.bodies[what.body]
     if part.parts is not None or (part.shape is not None and not part.shape.is_point):
@@ -427,22 +421,22 @@ def _round(system: System, meeting: Meeting) -> list[Mark]:
 
 def _point_support(system: System, meeting: Meeting, rows: Sequence[Any], of: str) -> list[Mark]:
     """A roller on the ground's line, a block on a body's line."""
-    if system.scope.model.space != "plane" or not isinstance(meeting.what, TouchingPoint):
+    if system.scope.model.space != "plane" or not meeting.point:
         return []
-    at = system.motion.position(system.motion.place(meeting.what.point))
-    surface = meeting.surface
-    if isinstance(surface, FlatSurface):
-        n = unit(system.scope.vector(surface.normal))
+    at = system.motion.position(system.motion.place(meeting.point))
+    groove = meeting.groove
+    if meeting.flat is not None:
+        n = unit(system.scope.vector(meeting.flat.normal))
         if system.symbols.q and system.motion.moves(at):
             return []
         return [Mark(SymbolForm("roller", at, Vector((n[1], -n[0], 0))), 0, "support", of)]
-    if isinstance(surface, Groove) and surface.on is not None:
-        place, link = system.motion.place(meeting.what.point), system.motion.link(surface.on)
-        along = system.scope.vector(surface.along)
+    if groove is not None and groove.on is not None:
+        place, link = system.motion.place(meeting.point), system.motion.link(groove.on)
+        along = system.scope.vector(groove.along)
         return [Mark(SymbolForm("blade", place[1], along), system.motion.index[link.name] + 1, "joint", of)]
-    if isinstance(surface, BodyLine):
-        (_, A), (_, B) = SystemScene(system.motion).line(surface.on)
-        R = system.motion.link(surface.on).pose.R
+    if meeting.line is not None:
+        (_, A), (_, B) = SystemScene(system.motion).line(meeting.line)
+        R = system.motion.link(meeting.line).pose.R
         along = R @ Vector((B[0] - A[0], B[1] - A[1], B[2] - A[2]))
         return [Mark(SymbolForm("slider", at, along), 0, "joint", of)]
     return []

@@ -21,7 +21,7 @@ from eomgen.errors import DerivationError, EomgenError, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.instant import Quantities
 from eomgen.mechanics.linearization import ParameterSlopes
-from eomgen.mechanics.start import Seeds, Start, start_seeds
+from eomgen.mechanics.start import ExactStart, Seeds, Start
 from eomgen.mechanics.state import Numbers, Split
 from eomgen.model import (
     AtRest,
@@ -424,7 +424,7 @@ class _Asking:
         numbers = self._numbers
         changed = dict(self._changed(name))
         changed |= _seeds_of_inputs(self.phase, numbers, changed)
-        begun = start_seeds(system, numbers, changed, "" if name in self.model.parameters else name)
+        begun = ExactStart.derivatives(system, numbers, changed, "" if name in self.model.parameters else name)
         seeds = {**changed, **begun}
         return numbers, seeds | _seeds_of_inputs(self.phase, numbers, seeds)
 

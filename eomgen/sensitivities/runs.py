@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen import Program, RightHandSide, kinematic_rates, parameter_vector
+from eomgen.codegen import Program, RightHandSide
 from eomgen.errors import DerivationError, EomgenError, NotYet, RunFailed
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
@@ -79,7 +79,7 @@ def changing_run(
     along = {name: {**seeds, **dict(zip(x, s[name], strict=True))} for name, seeds in changes.items()}
     extended = replace(symbols, z=(*symbols.z, *(node for own in s.values() for node in own)))
     rows = [*rates, *(d for seeds in along.values() for d in tangent(rates, seeds))]
-    f, p = RightHandSide.of(Program.of(rows, extended)), parameter_vector(system.scope.model)
+    f, p = RightHandSide.of(Program.of(rows, extended)), RightHandSide.parameter_values(system.scope.model)
     x0 = np.concatenate([start[0], *(start[1][name] for name in changes)])
     states = _integrated(f.at(p), x0, instants, system.scope.model.breakpoints)
     inputs = _own_inputs(system)
@@ -95,7 +95,7 @@ def _rates(phase: Study) -> tuple[Scalar, ...]:
     """x' as functions of t, x and the parameters."""
     equations, a = phase.equations, phase.system.symbols.a
     known = equations.accelerations if not equations.J and equations.accelerations else phase.accelerations
-    outputs = (*kinematic_rates(equations), *a, *equations.state_rates)
+    outputs = (*equations.kinematic_rates, *a, *equations.state_rates)
     rates = substituted(outputs, dict(zip(a, known, strict=True)))
     return substituted(rates, _own_inputs(phase.system))
 

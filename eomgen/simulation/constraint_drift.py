@@ -25,7 +25,7 @@ import numpy as np
 
 from eomgen.codegen import Program, QuaternionPlaces, RightHandSide, at_unit_norms
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import PLACE, Rank
+from eomgen.mechanics.constraints import DependentBlock, Rank
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, mass
 from eomgen.simulation.event_location import LOOKED_OUT, PARTS, Crossing, Measured
 from eomgen.symbolic.expression import Scalar, substituted
@@ -562,7 +562,7 @@ class Undetermined:
 
     determinants: Measure
     words: tuple[str, ...]
-    place: str = PLACE
+    place: str = DependentBlock.PLACE
     is_watched: bool = False
 
     def at(self, p: np.ndarray) -> Undetermined:
@@ -586,7 +586,7 @@ def undetermined_of(equations: EquationsOfMotion, p: np.ndarray, declared: Syste
         determinants = tuple(part.determinant for part in parts)
         return [Undetermined(measure(system, determinants, p), words, place, is_watched)] if parts else []
 
-    found = of(system.singular_blocks, PLACE, is_watched=True)
+    found = of(system.singular_blocks, DependentBlock.PLACE, is_watched=True)
     found += of(system.declared, "declare other speeds")
     found += of(system.motion.locks, "gimbal lock: choose another `orientation`, or a quaternion")
     rows = independence_of(equations, p, declared)

@@ -135,12 +135,15 @@ def _rows(values: Any, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.broadcast_to(T, t.shape), np.broadcast_to(V, t.shape)
 
 
-def instants_of(samples: int | Sequence[Typed], start: float, end: float) -> np.ndarray:
+def instants_of(samples: int | Sequence[Typed] | None, start: float, end: float) -> np.ndarray:
     """The requested instants: so many, evenly spaced; or the instants themselves, in SI or with a unit.
+
+    None: so many as a run has by itself.
 
     Raises:
         UsageError: fewer than two, or not in order between start and end.
     """
+    samples = SAMPLES if samples is None else samples
     if isinstance(samples, (int, np.integer)):
         if samples < 2:
             raise UsageError(f"{samples} samples: at least the start and the end are needed", fix="samples = 2 or more")

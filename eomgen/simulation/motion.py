@@ -12,8 +12,8 @@ import numpy as np
 from eomgen.codegen import Program, RightHandSide
 from eomgen.errors import DerivationError, RunFailed, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import PLACE
-from eomgen.mechanics.dynamics import SMOOTH, EquationsOfMotion, signs_of_rates
+from eomgen.mechanics.constraints import DependentBlock
+from eomgen.mechanics.dynamics import EquationsOfMotion, ForceJumps
 from eomgen.simulation.compiled_phases import CompiledPhases, compiled_phases
 from eomgen.simulation.contacts import Configuration
 from eomgen.simulation.departure import RestDeparture
@@ -178,8 +178,10 @@ def _named(phase: PhaseModel, run: Run, begun: float) -> Run:
     """The run; where it ended at a state without a value, with the quantity that has none there or is too large."""
     if run.status in ("step too small", "too many steps") and (large := phase.overlarge(run.end, run.last)):
         return replace(run, message=f"{run.message[:-1]}: {large.what}.")
-    if run.status in ("step too small", "too many steps") and (jumping := signs_of_rates(phase.system)):
-        reported = f"A force jumps with the sign of {to_text(jumping[0])}, and sticks where that is 0: {SMOOTH}."
+    if run.status in ("step too small", "too many steps") and (jumping := ForceJumps(phase.system).signs):
+        reported = (
+            f"A force jumps with the sign of {to_text(jumping[0])}, and sticks where that is 0: {ForceJumps.SMOOTH}."
+        )
         return replace(run, message=f"{run.message} {reported}")
     found = phase.valueless(run.end, run.last) if run.status == "not finite" else None
     if found is None:
@@ -483,7 +485,7 @@ class FirstTime:
             before, there = self._phase.functions.evaluated(t, x, (block.determinant,))[:, 0]
             if abs(there) < tolerances.DEGENERATE * abs(before):
                 raise RunFailed(
-                    f"{block} at that instant ({PLACE})",
+                    f"{block} at that instant ({DependentBlock.PLACE})",
                     fix="leave out `dependent`: then their rates belong to the state",
                 )
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen import Program, RightHandSide, Solve, kinematic_rates
+from eomgen.codegen import Program, RightHandSide, Solve
 from eomgen.errors import UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import (
@@ -364,7 +364,7 @@ def slope_of(equations: EquationsOfMotion, p: np.ndarray, target: str | None = N
     states, further = equations.symbols.x, equations.state_rates
     n, k = len(equations.M), len(equations.J)
     parts = (
-        jacobian(kinematic_rates(equations), states),
+        jacobian(equations.kinematic_rates, states),
         jacobian([x for rows in equations.residual for x in rows], states),
         equations.M,
         equations.J,

@@ -16,7 +16,7 @@ import numpy as np
 
 from eomgen.codegen import Program, RightHandSide
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import STILL
+from eomgen.mechanics.constraints import Row
 from eomgen.mechanics.free_bodies import BodyEquation, NamedReaction, Reactions
 from eomgen.symbolic.expression import Scalar
 from eomgen.symbolic.numeric import balanced, tolerances
@@ -172,7 +172,7 @@ def _where_singular(A: np.ndarray, b: np.ndarray, C: np.ndarray) -> np.ndarray:
     return np.where(traces > tolerances.SHARE * np.linalg.norm(C, axis=1), np.nan, C @ rho)
 
 
-SLIDES = 1e2 * float(STILL)  # |v|, at which friction is all but along it [m/s]
+SLIDES = 1e2 * float(Row.STILL)  # |v|, at which friction is all but along it [m/s]
 BRIEF = 1e-2  # of the phase, the longest time that is waited for it
 TRIES = 30  # each twice as long as the one before
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from eomgen.codegen import QuaternionPlaces
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import PLACE
+from eomgen.mechanics.constraints import DependentBlock
 from eomgen.simulation.constraint_drift import EnergyLevel, Nearness, Projection, RankLookout, Undetermined
 from eomgen.simulation.event_location import LOOKED_OUT, Crossing, Events, EventSearch
 from eomgen.simulation.integrator import Run, Stepping, march
@@ -273,7 +273,9 @@ def _from(instants: np.ndarray | None, t: float) -> np.ndarray | None:
 def _ended(flow: Flow, run: Run, nearness: Nearness) -> Run:
     """A run that cannot be carried on, and why."""
     tau = _time_to(flow, run.end, run.last, nearness) or 0.0
-    message = f"Stopped at t = {run.end + tau:.6g} s: {nearness.words(run.end, run.last)} there ({PLACE})."
+    message = (
+        f"Stopped at t = {run.end + tau:.6g} s: {nearness.words(run.end, run.last)} there ({DependentBlock.PLACE})."
+    )
     return replace(run, status="singular", message=message, crossing=None)
 
 

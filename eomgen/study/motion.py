@@ -101,12 +101,12 @@ class StateAtInstant:
         Raises:
             DerivationError: there is no equilibrium, or a contact would have to pull there.
         """
-        from eomgen.mechanics.equilibrium import standing_system
+        from eomgen.mechanics.equilibrium import StaticEquations
 
         if study.statics.loaded:
             return _held(study.system)
         place = study.equilibria.nearest()
-        system = standing_system(place.statics.system)
+        system = StaticEquations.standing(place.statics.system)
         place.refuse_contradicted()
         held = f", {', '.join(place.statics.held)} held" if place.statics.held else ""
         exact = {**place.exact, **_still(system)}
@@ -311,11 +311,10 @@ class MotionFromStart:
         """The phases of a model that has any, and values for its parameters; else None."""
         if not self.model.has_phases:
             return None
-        from eomgen.codegen import parameter_vector
         from eomgen.simulation import PhaseModels
 
         try:
-            return PhaseModels(self.model, parameter_vector(self.model), "numpy")
+            return PhaseModels(self.model, RightHandSide.parameter_values(self.model), "numpy")
         except MissingValues:
             return None
 

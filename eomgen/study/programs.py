@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen import Program, RightHandSide, Solve, is_short, kinematic_rates, parameter_vector
+from eomgen.codegen import Program, RightHandSide, Solve
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Rank
@@ -168,7 +168,7 @@ class InverseDynamics:
             UsageError: a coordinate without a motion, an unknown name; the motion opens the constraints.
         """
         times = np.atleast_1d(np.asarray(t, dtype=float))
-        p = parameter_vector(self.graph.system.scope.model, parameters)
+        p = RightHandSide.parameter_values(self.graph.system.scope.model, parameters)
         given = GivenMotion(self.graph.system, times, motion, p)
         tau = self.function("numpy").many(times, given.x, given.a, p)
         return dict(zip(self.names, tau.T, strict=True))
@@ -252,16 +252,16 @@ def slopes_of(equations: EquationsOfMotion) -> Matrices:
         return _solved(equations)
     a = equations.accelerations or factor_solution(equations.M, equations.forcing)
     known = dict(zip(equations.symbols.a, a, strict=True))
-    rates = (*kinematic_rates(equations), *a, *substituted(equations.state_rates, known))
+    rates = (*equations.kinematic_rates, *a, *substituted(equations.state_rates, known))
     found = [Matrices({name: jacobian(rates, x) for name, x in _columns(equations).items()})]
     if not equations.friction:
-        found.append(_written_out(equations, a) if is_short(equations) else _solved(equations))
+        found.append(_written_out(equations, a) if Program.unrolls(equations) else _solved(equations))
     return min(found, key=lambda found: found.program(equations).count.total)
 
 
 def _written_out(equations: EquationsOfMotion, a: ScalarRow) -> Matrices:
     """M da = -d(M a - forcing) by one factorization, that of all columns."""
-    rates, (left, _) = kinematic_rates(equations), equations.residual
+    rates, (left, _) = equations.kinematic_rates, equations.residual
     known, blocks = dict(zip(equations.symbols.a, a, strict=True)), {}
     for name, states in _columns(equations).items():
         changes = zip(*jacobian(left, states), strict=True)
@@ -300,7 +300,7 @@ def _columns(equations: EquationsOfMotion) -> dict[str, tuple[Node, ...]]:
 
 def _solved(equations: EquationsOfMotion) -> Matrices:
     """Slopes by the `Solve` of the motion, with one more right-hand side for each column that is not zero."""
-    symbols, rates, motion = equations.symbols, kinematic_rates(equations), Solve.bordered(equations)
+    symbols, rates, motion = equations.symbols, equations.kinematic_rates, Solve.bordered(equations)
     left = dict(zip((*symbols.a, *symbols.lam), (x for rows in equations.residual for x in rows), strict=True))
     solves: dict[Node, Solve] = {}
     blocks: dict[str, ScalarRows] = {}

@@ -30,12 +30,11 @@ from eomgen.mechanics.constraints import Rank, holds_identically
 from eomgen.mechanics.dynamics import (
     EquationsOfMotion,
     Explicit,
+    ForceJumps,
     System,
     WellPosed,
     assembled_by_recursion,
-    refuse_jump,
     reported_of_nodes,
-    signs_of_rates,
     with_accelerations,
     with_nodes_balanced,
 )
@@ -222,12 +221,16 @@ class Study:
             DerivationError: a force jumps there; an unsupported body.
             ModelError: a free coordinate moves no mass.
         """
-        from eomgen.codegen import RightHandSide, parameter_vector
+        from eomgen.codegen import RightHandSide
         from eomgen.simulation import ReactionColumns
 
-        p, symbols, start = parameter_vector(self.model), self.system.symbols, list(self.state_at_start.values())
+        p, symbols, start = (
+            RightHandSide.parameter_values(self.model),
+            self.system.symbols,
+            list(self.state_at_start.values()),
+        )
         known = {x: Fraction(value) for x, value in zip(symbols.x, start, strict=True)}
-        refuse_jump(self.system, known | {symbols.t: Fraction(0)})
+        ForceJumps(self.system).refuse(known | {symbols.t: Fraction(0)})
         columns = ReactionColumns(self.reactions, RightHandSide.of(self.program, "numpy"))
         values = columns.along(np.zeros(1), np.array([start]), p)[0]
         rounding = tolerances.ROUNDING * max((abs(x) for x in values if math.isfinite(x)), default=0.0)
@@ -470,8 +473,8 @@ class Study:
 
     def refuse_jump(self, formulas: Sequence[Expression], numbers: Mapping[Node, Scalar | float]) -> None:
         """Refuses accelerations and reactions in formulas at a state where they jump with the sign of a rate."""
-        if signs_of_rates(self.system) and any(map(self.needs_equations, formulas)):
-            refuse_jump(self.system, exact_numbers(numbers))
+        if ForceJumps(self.system).signs and any(map(self.needs_equations, formulas)):
+            ForceJumps(self.system).refuse(exact_numbers(numbers))
 
     def numbers(self, formulas: Sequence[Expression], numbers: Mapping[Node, Scalar | float]) -> list[float]:
         """Numbers of several formulas at a state; common subexpressions are evaluated once."""
@@ -535,7 +538,7 @@ class Study:
             return state
         cached = self._cached(given)
         if readable not in cached:
-            refuse_jump(self.system, state)
+            ForceJumps(self.system).refuse(state)
             cached[readable] = self._unknowns_at(state, readable)
         return {**state, **cached[readable]}
 

@@ -24,7 +24,7 @@ import numpy as np
 from eomgen.errors import ExpressionError, UsageError
 from eomgen.files import json_text
 from eomgen.frozen import dataclass
-from eomgen.model import Model, Taken, TypedNumbers, loads, nearest, refuse_what_is_not_set, with_values
+from eomgen.model import Model, Taken, TypedNumbers, Valued, loads, nearest, refuse_what_is_not_set
 from eomgen.sensitivities import slope_requested
 from eomgen.symbolic.numeric import tolerances
 from eomgen.version import __version__
@@ -310,7 +310,7 @@ class SweepPlan:
         """The model at the values that hold in every run."""
         declared = self.made if self.made is not None else loads(self.text, "plan.json", self.title)
         options = ("--set", "--start")
-        return with_values(declared, self.given, self.start, options=options, declared=True).model
+        return Valued.of(declared, self.given, self.start, options=options, declared=True).model
 
     @cached_property
     def slopes(self) -> dict[str, tuple[str, str]]:

@@ -17,7 +17,6 @@ from eomgen import files
 from eomgen.errors import ExpressionError, RunFailed, UsageError
 from eomgen.frozen import dataclass
 from eomgen.model import (
-    LIKE,
     Model,
     ModelOrPath,
     Range,
@@ -262,7 +261,7 @@ def _values(model: Model, name: str, given: Any) -> tuple[float, ...]:
         values = tuple(map(typed.number, typed_values(given)))
     except (ValueError, TypeError, ExpressionError) as error:
         what, fix = (error.what, error.fix) if isinstance(error, ExpressionError) else ("they are no numbers", "")
-        raise UsageError(f"over: the values of '{name}': {what}", fix=fix or LIKE) from error
+        raise UsageError(f"over: the values of '{name}': {what}", fix=fix or Range.LIKE) from error
     if not values or not all(map(math.isfinite, values)):
         raise UsageError(f"over: the values of '{name}' are no numbers", fix="give one or more")
     return values

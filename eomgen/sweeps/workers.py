@@ -29,7 +29,7 @@ from typing import Any
 from eomgen.errors import EomgenError, RunFailed, UsageError, WriteFailed
 from eomgen.frozen import dataclass
 from eomgen.mechanics.instant import Quantities
-from eomgen.model import Model, Output, OutputSource, requested_of, with_values
+from eomgen.model import Model, Output, OutputSource, Valued, requested_of
 from eomgen.pipeline import simulator
 from eomgen.questions import solve
 from eomgen.resources import PatienceEnded
@@ -294,7 +294,7 @@ class SweepKernel:
     def valued(self, set_: Mapping[str, float]) -> Model:
         """The model at these values [SI]."""
         parameters, start = self._parted(set_)
-        return with_values(self.plan.model, parameters, start).model
+        return Valued.of(self.plan.model, parameters, start).model
 
     def _parted(self, set_: Mapping[str, float]) -> tuple[dict[str, float], dict[str, float]]:
         names = self.plan.model.parameters

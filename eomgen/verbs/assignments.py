@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from eomgen.errors import ExpressionError, UsageError
-from eomgen.model import AtRest, Model, Taken, Valued, assignments, equation_typed, with_values
+from eomgen.model import AtRest, Model, Taken, Valued, assignments, equation_typed
 from eomgen.questions import positions_at_rest, variant_of
 
 OPTIONS = {"set_": "--set", "start": "--start", "from_rest": "--from-rest", "at": "--at", "until": "--until"}
@@ -26,11 +26,11 @@ def typed(model: Model, options: Mapping[str, Any]) -> tuple[Valued, dict[str, A
     drawn = Valued(model) if number is None else variant_of(model, number)
     model = drawn.model
     given, start = (dict(assignments(options.get(name, ()), EXAMPLES[OPTIONS[name]])) for name in ("set_", "start"))
-    valued = with_values(model, given, start, options=("--set", "--start"), declared=True)
+    valued = Valued.of(model, given, start, options=("--set", "--start"), declared=True)
     taken = [*drawn.taken, *valued.taken]
     if left.get("from_rest"):
         rest = positions_at_rest(model, left["from_rest"], EXAMPLES["--from-rest"])
-        placed = with_values(valued.model, None, rest, options=("--set", "--from-rest"), declared=True)
+        placed = Valued.of(valued.model, None, rest, options=("--set", "--from-rest"), declared=True)
         left["from_rest"] = {name: placed.model.coordinates[name].start for name in rest}
         taken += placed.taken
     for name in ("at", "until"):

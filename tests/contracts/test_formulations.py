@@ -23,7 +23,7 @@ from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
 from eomgen.mechanics.dynamics.tree import branches_of
 from eomgen.mechanics.kinematics.inertia import SystemInertia
 from eomgen.model.likely_mistakes import unbuilt
-from eomgen.symbolic.expression.derivatives import depends_on_any
+from eomgen.symbolic.expression.derivatives import depends_on
 from eomgen.symbolic.expression.graph import same_number
 from eomgen.symbolic.expression.spatial import Vector
 from eomgen.symbolic.numeric.evaluation import NoValue
@@ -241,4 +241,4 @@ def test_the_angle_of_a_body_of_revolution_about_its_axis_stands_nowhere():
     """A rotor's moments across its axis are one: R J R^T = R (J - A 1) R^T + A 1 holds no angle of it."""
     motion = system_named("dual_spin_satellite").motion
     sigma = next(q for q in motion.scope.symbols.q if q.name == "sigma")
-    assert not depends_on_any([x for row in recursive.mass(motion) for x in row], (sigma,))
+    assert not depends_on([x for row in recursive.mass(motion) for x in row], (sigma,))

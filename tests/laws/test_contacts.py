@@ -10,7 +10,7 @@ from each import each
 from scipy.integrate import solve_ivp
 
 import eomgen
-from eomgen.codegen.rhs import parameter_vector
+from eomgen.codegen.rhs import RightHandSide
 from eomgen.errors import DerivationError
 from eomgen.mechanics.constraints.rank import Rank
 from eomgen.simulation.integrator import Stepping
@@ -192,7 +192,7 @@ constraints.one = { kind = "rolling", body = "disc", line = { at = [0, 0], norma
 constraints.other = { kind = "rolling", body = "disc", line = { at = [0, 0], normal = [0, 1] }, unilateral = true }
 """
     model = eomgen.loads(HEAD + text)
-    system = PhaseModels(model, parameter_vector(model), "numpy").without_contacts.system
+    system = PhaseModels(model, RightHandSide.parameter_values(model), "numpy").without_contacts.system
     assert {row.constraint for row in system.constraints.rows} == {"one"} and Rank(
         system.constraints
     ).degrees_of_freedom() == 2
@@ -571,7 +571,7 @@ def test_a_rough_path_holds_a_body_at_rest():
 def runs_until(text: str, name: str, level: int, time: float) -> tuple[PhaseModels, list[PhaseRun]]:
     """The phases until a coordinate or rate is at a level."""
     model = eomgen.loads(HEAD + text)
-    models = PhaseModels(model, parameter_vector(model), "numpy")
+    models = PhaseModels(model, RightHandSide.parameter_values(model), "numpy")
     fine = Stepping(rtol=1e-12, atol=1e-12)
     plan = Plan(time, fine, until=lambda phase: phase.system.scope.names[name] - level)
     return models, list(plan.through(models, PhaseStart.of(models, 0.0, None, None)))

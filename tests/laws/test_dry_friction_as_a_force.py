@@ -48,7 +48,7 @@ def test_the_smooth_law_runs_from_rest():
 
 def test_a_number_where_a_force_jumps_is_contradicted(monkeypatch):
     """Whoever tells the reaction at q' = 0 all the same has a certificate that fails; at q' = 1/2 it holds."""
-    monkeypatch.setattr("eomgen.study.study.refuse_jump", lambda system, state: None)
+    monkeypatch.setattr("eomgen.mechanics.dynamics.pieces.ForceJumps.refuse", lambda self, state: None)
     at_rest, moving = (eomgen.reactions(hinge(speed)) for speed in (0, 0.5))
     assert at_rest["reaction_x(arm)"].value is not None
     assert at_rest.certify().ok is False and moving.certify().ok

@@ -13,7 +13,7 @@ from scipy.special import ellipj, ellipk
 from slow_run import in_slow_run, sampled, usual
 
 import eomgen
-from eomgen.codegen.rhs import parameter_vector
+from eomgen.codegen.rhs import RightHandSide
 from eomgen.runs.single_run import run
 from eomgen.simulation.constraint_drift import projection_of
 from eomgen.simulation.integrator import Stepping
@@ -166,7 +166,7 @@ def test_projection_at_every_so_many_steps():
 def test_a_state_is_put_back_by_the_least_change(text):
     """phi = 0 and J u + sigma = 0 after it, and M du is normal to all du with J du = 0."""
     equations = eomgen.derive(eomgen.loads(text))
-    projection = projection_of(equations.system, parameter_vector(equations.model))
+    projection = projection_of(equations.system, RightHandSide.parameter_values(equations.model))
     x = equations.start()
     x[:3] += np.array([3e-4, -2e-4, 1e-4])
     x[3:] += np.array([0.1, 0.2, -0.1])
@@ -184,7 +184,7 @@ def test_driven_coordinates_stay():
     """A driven crank: only coupler and rocker are moved."""
     text = FOUR_BAR.replace("a = { start = 1, speed = 4 }", 'a = { motion = "1 + 4*t" }')
     equations = eomgen.derive(eomgen.loads(text))
-    projection = projection_of(equations.system, parameter_vector(equations.model))
+    projection = projection_of(equations.system, RightHandSide.parameter_values(equations.model))
     x = equations.start()
     found, left = projection.closed(0.0, x + 1e-4, 1e-12)
     assert left < 1e-11 and found[0] == x[0] + 1e-4 and abs(found[1] - x[1] - 1e-4) > 1e-6

@@ -11,7 +11,7 @@ from random_frames import stiff_frame
 import eomgen
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.free_bodies.structure import Structure
-from eomgen.mechanics.statics.forces_in_sections import KINDS, SectionForces
+from eomgen.mechanics.statics.forces_in_sections import SectionForces
 from eomgen.mechanics.statics.influence import InfluenceLine
 from eomgen.mechanics.statics.virtual_work import StaticReactions
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
@@ -43,7 +43,7 @@ def test_a_section_carries_what_acts_before_it(seed, members):
         forces = SectionForces.of(found.balance, f"m{i}")
         for _ in range(2):
             x = between(rng, length)
-            values = numbers(system, *(forces.value(kind, x * a) for kind in KINDS))
+            values = numbers(system, *(forces.value(kind, x * a) for kind in SectionForces.KINDS))
             assert values == pytest.approx(frame.section(i, float(x)), abs=1e-8), (frame.text, i, x)
 
 
@@ -53,7 +53,7 @@ def test_an_influence_line_is_the_force_under_a_load_of_1_at_any_place(seed, mem
     frame, rng = stiff_frame(seed, members), Random(seed)
     system = System.of(eomgen.loads(frame.text))
     structure = Structure.of(system)
-    kind, i = rng.choice(KINDS), rng.randrange(members)
+    kind, i = rng.choice(SectionForces.KINDS), rng.randrange(members)
     x = between(rng, frame.length[i])
     way = ", ".join(f"m{j}" for j in range(members))
     spans = InfluenceLine.of(structure, f"{kind}(m{i}, {x}*a): {way}").spans
@@ -66,5 +66,5 @@ def test_an_influence_line_is_the_force_under_a_load_of_1_at_any_place(seed, mem
             (p + float(share) * (q - p) - o) * t
             for p, q, o, t in zip(ends[:3], ends[3:], (*frame.place(j, 0), 0.0), along, strict=True)
         )
-        expected = frame.under_unit_load(j, s).section(i, float(x))[KINDS.index(kind)]
+        expected = frame.under_unit_load(j, s).section(i, float(x))[SectionForces.KINDS.index(kind)]
         assert value == pytest.approx(expected, abs=1e-8), (frame.text, kind, i, x, span.name, s)

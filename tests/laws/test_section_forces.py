@@ -15,7 +15,7 @@ import pytest
 import eomgen
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.free_bodies.reactions import Reactions
-from eomgen.mechanics.statics.forces_in_sections import KINDS, SectionForces
+from eomgen.mechanics.statics.forces_in_sections import SectionForces
 from eomgen.symbolic.exact.solving import vanishes
 from eomgen.symbolic.expression.derivatives import derivative, symbols_of
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
@@ -169,7 +169,7 @@ def test_a_cantilever_carries_what_acts_beyond_the_section(seed):
             -sum(f @ n for _, f, _ in beyond),
             sum(c + arm * (f @ n) for arm, f, c in beyond),
         ]
-        found = [float(evaluate((forces.value(kind, x),), {}, FLOAT)[0]) for kind in KINDS]
+        found = [float(evaluate((forces.value(kind, x),), {}, FLOAT)[0]) for kind in SectionForces.KINDS]
         assert found == pytest.approx(expected, abs=1e-9), k
 
 
@@ -267,6 +267,8 @@ def test_an_eye_pushes_its_rail_where_it_is():
     system = System.of(eomgen.loads(RESTS_BY_AN_EYE))
     before, behind = SectionForces.of(Reactions.of(system), "wall").pieces
     values = {x: 6 if x.name == "P" else 1.5 if x.name == "c" else 4 for x in system.symbols.parameters.values()}
-    reported = [[piece.value(kind, x) for kind in KINDS] for piece, x in ((before, Fraction(1, 2)), (behind, 3))]
+    reported = [
+        [piece.value(kind, x) for kind in SectionForces.KINDS] for piece, x in ((before, Fraction(1, 2)), (behind, 3))
+    ]
     assert evaluate(tuple(reported[0]), values, FLOAT) == pytest.approx([0, 6, 6 * (0.5 - 1.5)])
     assert evaluate(tuple(reported[1]), values, FLOAT) == pytest.approx([0, 0, 0])

@@ -1,8 +1,5 @@
 """Door of the folder: what other folders may import from `eomgen.mechanics.constraints`."""
 
-# of values for parameters that have none: what is no closed form agrees at one of them by chance
-from eomgen.mechanics.constraints.assembly import SEEDS as SEEDS
-
 # Positions and speeds that constraints put together from those given, and places where branches of motion meet
 from eomgen.mechanics.constraints.assembly import Assembly as Assembly
 
@@ -21,7 +18,6 @@ from eomgen.mechanics.constraints.closure import Closure as Closure
 
 # The nearest state at which the scalars vanish, as `closed`
 from eomgen.mechanics.constraints.closure import nearest_root as nearest_root
-from eomgen.mechanics.constraints.elimination import PLACE as PLACE
 
 # Dependent coordinates that some rows determine together
 from eomgen.mechanics.constraints.elimination import DependentBlock as DependentBlock
@@ -34,9 +30,6 @@ from eomgen.mechanics.constraints.rank import Freedom as Freedom
 
 # Which constraint rows are independent: at a generic configuration in which the constraints hold
 from eomgen.mechanics.constraints.rank import Rank as Rank
-
-# a sliding velocity that is none [m/s]
-from eomgen.mechanics.constraints.rows import STILL as STILL
 
 # All rows of all constraints, and the matrices of those that close
 from eomgen.mechanics.constraints.rows import Constraints as Constraints

@@ -42,12 +42,12 @@ from eomgen.symbolic.numeric import (
     tolerances,
 )
 
-SEEDS = (11, 12)  # of values for parameters that have none: what is no closed form agrees at one of them by chance
-
 
 @dataclass(frozen=True)
 class Assembly:
     """Positions and speeds that constraints put together from those given, and places where branches of motion meet."""
+
+    SEEDS = (11, 12)  # of values for parameters that have none: what is no closed form agrees at one of them by chance
 
     constraints: Constraints
 
@@ -62,7 +62,9 @@ class Assembly:
             return {}
         declared = scope.with_unit_quaternions(scope.start_values()) | {scope.symbols.t: 0}
         drawn = any(name not in scope.model.exact_parameters() for name in scope.symbols.parameters)
-        states = [_assembled(self.constraints, declared, seed) for seed in (SEEDS if drawn else SEEDS[:1])]
+        states = [
+            _assembled(self.constraints, declared, seed) for seed in (Assembly.SEEDS if drawn else Assembly.SEEDS[:1])
+        ]
         moved = [q for q in scope.symbols.q if any(_differs(declared[q], q, state) for state in states)]
         if not moved:
             return {}

@@ -30,7 +30,6 @@ FAR = (3.0, 1.0, 0.3)  # distances from the start at which chosen rows are teste
 FAR_STATES = 8
 LEAN = 0.02  # of the largest share of the chosen rows in the determinant of all
 SHAKEN = (2, 3)  # seeds of states with parameters of their own
-PLACE = "a dead centre or a change point"
 
 
 @dataclass(frozen=True)
@@ -41,6 +40,8 @@ class DependentBlock:
         coordinates, constraints: their names.
         determinant: of the rows' coefficients of these rates; where it vanishes they are not determined.
     """
+
+    PLACE = "a dead centre or a change point"
 
     coordinates: tuple[str, ...]
     constraints: tuple[str, ...]

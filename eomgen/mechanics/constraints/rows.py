@@ -49,7 +49,6 @@ from eomgen.symbolic.print import text_size, to_text
 
 Wrenches = tuple[tuple[str, Wrench], ...]
 LONG = 60  # characters of a gap that is not printed
-STILL = Fraction(1, 10**8)  # a sliding velocity that is none [m/s]
 
 
 @dataclass(frozen=True)
@@ -79,6 +78,8 @@ class Row:
             multiplier is one component and those of the rows before are the others.
         carrier: the body in whose axes the row is written, which carries all that it holds; None: the ground.
     """
+
+    STILL = Fraction(1, 10**8)  # a sliding velocity that is none [m/s]
 
     constraint: str
     number: int
@@ -307,7 +308,7 @@ def _on_surface(row: Row, *, viscous: bool, still: bool) -> Row:
     assert row.across is not None, "asked of a contact on a surface"
     pair = (row.sliding, row.across)
     square = pair[0] * pair[0] + pair[1] * pair[1]
-    speed = sqrt(square + STILL * STILL if still else square)
+    speed = sqrt(square + Row.STILL * Row.STILL if still else square)
     shares = pair if viscous else tuple(over(v, speed) for v in pair)
     return replace(row, shares=shares, sliding=Fraction(1, 2) * square if viscous else speed)
 

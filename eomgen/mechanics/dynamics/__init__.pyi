@@ -38,19 +38,15 @@ from eomgen.mechanics.dynamics.formulations import reported_of_nodes as reported
 
 # The model with the balance of every massless node as a constraint, from which its coordinate follows
 from eomgen.mechanics.dynamics.formulations import with_nodes_balanced as with_nodes_balanced
-from eomgen.mechanics.dynamics.pieces import SMOOTH as SMOOTH
 
 # Extent of a property: everywhere, under conditions, or nowhere
 from eomgen.mechanics.dynamics.pieces import Extent as Extent
 
+# Forces of a system that jump with the sign of a rate
+from eomgen.mechanics.dynamics.pieces import ForceJumps as ForceJumps
+
 # The pieces of the scalars; None where they have none
 from eomgen.mechanics.dynamics.pieces import division_of as division_of
-
-# Refuse a state at which a force jumps with the sign of a rate
-from eomgen.mechanics.dynamics.pieces import refuse_jump as refuse_jump
-
-# Arguments of sign(...) in the forces that depend on speeds
-from eomgen.mechanics.dynamics.pieces import signs_of_rates as signs_of_rates
 
 # The equations of motion: q' = N u + nu, M a + c = Q + J^T lam, J a + gamma = 0
 from eomgen.mechanics.dynamics.system import EquationsOfMotion as EquationsOfMotion

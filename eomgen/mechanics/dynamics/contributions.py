@@ -20,7 +20,7 @@ from eomgen.symbolic.expression import (
     Node,
     Scalar,
     ScalarRow,
-    depends_on_any,
+    depends_on,
     gradient,
     inner,
     is_zero,
@@ -222,7 +222,7 @@ class Contributions:
         for number, load in enumerate(force.loads, start=1):
             name = f"the force {force.name}" + (f" ({number})" if many else "")
             body = _body((load,))
-            if isinstance(load, PointForce) and load.axes is None and not depends_on_any(load.force, self._varying):
+            if isinstance(load, PointForce) and load.axes is None and not depends_on(load.force, self._varying):
                 V = -(load.force @ motion.position(load.place))
                 found.append(Contribution(name, body, force.name, V=V, kind="constant", load=load))
                 continue

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
 from random import Random
-from typing import Any
+from typing import Any, ClassVar
 
 from eomgen.errors import DerivationError, MissingValues, ModelError
 from eomgen.frozen import dataclass
@@ -431,31 +431,37 @@ def _spread(count: int) -> list[int]:
 # At rest such a force may have any value in between, and the equations of motion do not say if it holds.
 
 
-SMOOTH = "tanh(w/eps) in place of sign(w) runs, and creeps where dry friction sticks: the slower, the smaller eps is"
+@dataclass(frozen=True)
+class ForceJumps:
+    """Forces of a system that jump with the sign of a rate."""
 
+    system: System
+    SMOOTH: ClassVar[str] = (
+        "tanh(w/eps) in place of sign(w) runs, and creeps where dry friction sticks: the slower, the smaller eps is"
+    )
 
-def signs_of_rates(system: System) -> tuple[Scalar, ...]:
-    """Arguments of sign(...) in the forces that depend on speeds."""
-    if signs_of_rates not in system.found:
-        forces = system.loads.generalized_forces
-        given = [node.args[0] for node in order(forces) if node.op == "sign"]
-        system.found[signs_of_rates] = tuple(x for x in given if depends_on(x, system.symbols.u))
-    found: tuple[Scalar, ...] = system.found[signs_of_rates]
-    return found
+    @property
+    def signs(self) -> tuple[Scalar, ...]:
+        """Arguments of sign(...) in the forces that depend on speeds."""
+        found, system = self.system.found, self.system
+        if ForceJumps not in found:
+            given = [node.args[0] for node in order(system.loads.generalized_forces) if node.op == "sign"]
+            found[ForceJumps] = tuple(x for x in given if depends_on(x, system.symbols.u))
+        signs: tuple[Scalar, ...] = found[ForceJumps]
+        return signs
 
+    def refuse(self, state: Mapping[Node, Any]) -> None:
+        """Refuse a state at which a force jumps.
 
-def refuse_jump(system: System, state: Mapping[Node, Any]) -> None:
-    """Refuse a state at which a force jumps with the sign of a rate.
-
-    Raises:
-        DerivationError: the rate is 0 there, with the values that parameters and inputs have.
-    """
-    signs = signs_of_rates(system)
-    known = system.scope.model.exact_parameters() if signs else {}
-    inputs = {node: system.inputs[name] for name, node in system.symbols.inputs.items()}
-    values = {system.symbols.parameters[name]: Fraction(x) for name, x in known.items()}
-    for x in signs:
-        (there,) = substituted(substituted(substituted((x,), inputs), state), values)
-        if is_zero(there) or vanishes(there):
-            what = f"a force jumps with the sign of {to_text(x)}, which is 0 there: dry friction may hold it or not"
-            raise DerivationError(what, fix=SMOOTH)
+        Raises:
+            DerivationError: the rate is 0 there, with the values that parameters and inputs have.
+        """
+        signs, system = self.signs, self.system
+        known = system.scope.model.exact_parameters() if signs else {}
+        inputs = {node: system.inputs[name] for name, node in system.symbols.inputs.items()}
+        values = {system.symbols.parameters[name]: Fraction(x) for name, x in known.items()}
+        for x in signs:
+            (there,) = substituted(substituted(substituted((x,), inputs), state), values)
+            if is_zero(there) or vanishes(there):
+                what = f"a force jumps with the sign of {to_text(x)}, which is 0 there: dry friction may hold it or not"
+                raise DerivationError(what, fix=self.SMOOTH)

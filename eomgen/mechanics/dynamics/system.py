@@ -9,15 +9,7 @@ from typing import Any
 
 from eomgen.errors import DerivationError, ModelError, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import (
-    PLACE,
-    Assembly,
-    Constraints,
-    DependentBlock,
-    Elimination,
-    Rank,
-    holds_identically,
-)
+from eomgen.mechanics.constraints import Assembly, Constraints, DependentBlock, Elimination, Rank, holds_identically
 from eomgen.mechanics.kinematics import (
     ContactModes,
     Loads,
@@ -35,7 +27,6 @@ from eomgen.symbolic.expression import (
     Symbols,
     as_expression,
     depends_on,
-    depends_on_any,
     fraction_of,
     inner,
     is_zero,
@@ -156,7 +147,7 @@ class System:
         for block in self.singular_blocks:
             if is_zero(substituted((block.determinant,), place)[0]):
                 fix = "start near it, or leave out `dependent`: then their rates belong to the state"
-                raise DerivationError(f"{block} {when} ({PLACE})", fix=fix)
+                raise DerivationError(f"{block} {when} ({DependentBlock.PLACE})", fix=fix)
 
     def refuse_states(self, what: str, fix: str) -> None:
         """Refuse what is not made where states of first order move too.
@@ -175,7 +166,7 @@ class System:
         """True if the constraints and drives leave degrees of freedom, and no unknown load acts along them."""
         unknowns = self.symbols.unknowns.values()
         forces = self.loads.generalized_forces
-        return Rank(self.constraints).degrees_of_freedom() > 0 and not depends_on_any(forces, unknowns)
+        return Rank(self.constraints).degrees_of_freedom() > 0 and not depends_on(forces, unknowns)
 
     def with_drives_held(self) -> tuple[System, tuple[str, ...]]:
         """(the system with driven coordinates at rest where they start, the names of those that the model moves)."""
@@ -314,6 +305,17 @@ class EquationsOfMotion:
             for row, force, push in zip(self.M, self.forcing, pushes, strict=True)
         )
         return balance, tuple(inner(row, a) + bias for row, bias in zip(self.J, self.gamma, strict=True))
+
+    @property
+    def kinematic_rates(self) -> ScalarRow:
+        """q' = N u + nu"""
+        rates = []
+        for row, value in zip(self.N, self.nu, strict=True):
+            for entry, speed in zip(row, self.symbols.u, strict=True):
+                if not is_zero(entry):
+                    value = value + entry * speed
+            rates.append(value)
+        return tuple(rates)
 
     @property
     def state_rates(self) -> ScalarRow:

@@ -25,7 +25,6 @@ from eomgen.symbolic.expression import (
     ScalarRow,
     State,
     depends_on,
-    depends_on_any,
     is_zero,
     order,
     substituted,
@@ -222,7 +221,7 @@ class StaticEquations:
         given = _given(free, driven)
         z = free.symbols.z
         rows = [(*readable_all(substituted(row, given), Work.FORMULA), *(0 for _ in z)) for row in free.constraints.J]
-        standing = standing_system(free)  # a damper at a seat that moves with t has no force at rest
+        standing = StaticEquations.standing(free)  # a damper at a seat that moves with t has no force at rest
         loads = (standing.free or standing).loads
         forces = loads.generalized_forces
         _refuse_signs_of_rates(forces, free)
@@ -249,6 +248,30 @@ class StaticEquations:
             tuple(x for x in sigma if not is_zero(x)),
         )
         return with_norms(statics)
+
+    @staticmethod
+    def over_rates(system: System) -> System:
+        """The system over its rates, where a declared speed is not 0 at rest; else as it is."""
+        scope = system.scope
+        given = (scope.model.coordinates[q.name].driven for q in scope.symbols.q)
+        moving = any(not is_zero(x) and not driven for x, driven in zip(scope.nu, given, strict=True))
+        if system.free is None or not scope.combines or not moving:
+            return system
+        return _made_of(system.free, system.free.scope)
+
+    @staticmethod
+    def standing(system: System) -> System:
+        """The system of `over_rates`, with everything that moves with t held where it is at t = 0."""
+        system = StaticEquations.over_rates(system)
+        free = system.free or system
+        scope, t = free.scope, (free.scope.symbols.t,)
+        places = [x for link in free.motion.links for x in (*link.pose.p, *(y for row in link.pose.R for y in row))]
+        given = (scope.model.coordinates[q.name].driven for q in scope.symbols.q)
+        biases = [x for x, driven in zip(scope.nu, given, strict=True) if not driven]
+        if not depends_on((*places, *biases, *(row.velocity for row in free.constraints.rows)), t):
+            return system
+        names = {name: substituted((x,), {t[0]: 0})[0] if type(x) is Node else x for name, x in scope.names.items()}
+        return _made_of(free, replace(scope, names=names))
 
 
 def with_norms(statics: StaticEquations) -> StaticEquations:
@@ -367,30 +390,6 @@ def _refuse_signs_of_rates(Q: ScalarRow, free: System) -> None:
 #
 # At rest all rates are 0. A declared speed w = Y q' + y(q, t) is then y, and need not be constant: where y is not 0,
 # rest means zero rates. A surface or a seat that moves with t stands where it is at t = 0, as the forces do.
-
-
-def over_rates(system: System) -> System:
-    """The system over its rates, where a declared speed is not 0 at rest; else as it is."""
-    scope = system.scope
-    given = (scope.model.coordinates[q.name].driven for q in scope.symbols.q)
-    moving = any(not is_zero(x) and not driven for x, driven in zip(scope.nu, given, strict=True))
-    if system.free is None or not scope.combines or not moving:
-        return system
-    return _made_of(system.free, system.free.scope)
-
-
-def standing_system(system: System) -> System:
-    """The system of `over_rates`, with everything that moves with t held where it is at t = 0."""
-    system = over_rates(system)
-    free = system.free or system
-    scope, t = free.scope, (free.scope.symbols.t,)
-    places = [x for link in free.motion.links for x in (*link.pose.p, *(y for row in link.pose.R for y in row))]
-    given = (scope.model.coordinates[q.name].driven for q in scope.symbols.q)
-    biases = [x for x, driven in zip(scope.nu, given, strict=True) if not driven]
-    if not depends_on_any((*places, *biases, *(row.velocity for row in free.constraints.rows)), t):
-        return system
-    names = {name: substituted((x,), {t[0]: 0})[0] if type(x) is Node else x for name, x in scope.names.items()}
-    return _made_of(free, replace(scope, names=names))
 
 
 def _made_of(free: System, scope: Scope) -> System:

@@ -24,7 +24,6 @@ from eomgen.symbolic.expression import (
     ScalarRow,
     State,
     depends_on,
-    depends_on_any,
     gradient,
     is_zero,
     jacobian,
@@ -171,7 +170,7 @@ class _Search:
     @property
     def _is_linear(self) -> bool:
         slopes = [x for row in jacobian(self.statics.equations, self.statics.unknowns) for x in row]
-        return not depends_on_any(slopes, self.statics.unknowns)
+        return not depends_on(slopes, self.statics.unknowns)
 
     def _linear(self) -> Places:
         """Linear equations have one solution, where they are regular."""

@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import partial
 from random import Random
+from typing import NamedTuple
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.equilibrium.equations import StaticEquations, standing_system
+from eomgen.mechanics.equilibrium.equations import StaticEquations
 from eomgen.mechanics.equilibrium.search import Equilibrium
 from eomgen.mechanics.free_bodies import Indeterminate, NamedReaction, Reactions
-from eomgen.mechanics.start import values_where_at_rest
+from eomgen.mechanics.start import ExactStart
 from eomgen.symbolic.exact import LinearSystem, Solution, readable_all, simplest, vanishes
 from eomgen.symbolic.expression import Fraction, Node, Scalar, depends_on, is_zero, jacobian, substituted
 from eomgen.symbolic.numeric import Work, evaluate, fifty_digits
@@ -37,7 +38,7 @@ class RestingReaction:
 def system_at_rest(place: Equilibrium) -> System:
     """The system at the equilibrium, over its rates where declared speeds are not 0 at rest."""
     system = place.statics.system
-    return standing_system(system if system.free is None or system.elimination is not None else system.free)
+    return StaticEquations.standing(system if system.free is None or system.elimination is not None else system.free)
 
 
 def state_at_rest(place: Equilibrium) -> dict[Node, Scalar]:
@@ -50,12 +51,23 @@ def state_at_rest(place: Equilibrium) -> dict[Node, Scalar]:
     return {**still, **inputs, **{q: at[q] for q in symbols.places}}
 
 
-def reactions_at(place: Equilibrium) -> tuple[Reactions, tuple[RestingReaction, ...]]:
-    """Every reaction of joints and constraints.
+class RestingReactions(NamedTuple):
+    """Reactions at an equilibrium: their law, each of them, and why they do not follow ("": they do)."""
 
-    Raises:
-        DerivationError: a force acts at no place, so that reactions do not follow.
-    """
+    reactions: Reactions | None
+    each: tuple[RestingReaction, ...]
+    why: str
+
+    @classmethod
+    def of(cls, place: Equilibrium) -> RestingReactions:
+        """Every reaction of joints and constraints; none where a force acts at no place."""
+        try:
+            return cls(*_reactions_at(place), "")
+        except DerivationError as error:
+            return cls(None, (), f"{error.what}; {error.fix}" if error.fix else error.what)
+
+
+def _reactions_at(place: Equilibrium) -> tuple[Reactions, tuple[RestingReaction, ...]]:
     system, state = system_at_rest(place), state_at_rest(place)
     reactions = Reactions.of(system, state, work=Work.ANSWER if place.is_exact else Work.PART)
     positive = system.scope.positive
@@ -69,17 +81,6 @@ def reactions_at(place: Equilibrium) -> tuple[Reactions, tuple[RestingReaction, 
         except Indeterminate:
             found.append(RestingReaction(named, None))
     return reactions, tuple(found)
-
-
-ReactionsOrWhy = tuple[Reactions | None, tuple[RestingReaction, ...], str]
-
-
-def reactions_or_why(place: Equilibrium) -> ReactionsOrWhy:
-    """(reactions, each of them, why there are none)."""
-    try:
-        return *reactions_at(place), ""
-    except DerivationError as error:
-        return None, (), f"{error.what}; {error.fix}" if error.fix else error.what
 
 
 # -------- loads at rest ---------------------------------------------------------------------------------------
@@ -118,7 +119,7 @@ def holding_of(system: System) -> Holding:
             "no unknown load does work when the system moves: none can hold it",
             fix="write one of [unknowns] into a force on what moves",
         )
-    state = values_where_at_rest(statics.system)
+    state = ExactStart.values_at_rest(statics.system)
     place = {q: state[q] for q in statics.system.symbols.q}
     solution = _solved(statics, place)
     _refuse_undetermined(statics, solution)

@@ -29,7 +29,7 @@ from eomgen.mechanics.free_bodies import Indeterminate, Reactions
 from eomgen.mechanics.kinematics import ContactMode, Located, Lock, Motion
 from eomgen.mechanics.start import shown_numbers
 from eomgen.mechanics.state import Doubles
-from eomgen.symbolic.expression import Fraction, Node, Scalar, ScalarRows, State, depends_on_any, jacobian, symbols_of
+from eomgen.symbolic.expression import Fraction, Node, Scalar, ScalarRows, State, depends_on, jacobian, symbols_of
 from eomgen.symbolic.numeric import FLOAT, NoValue, evaluate, rank, tolerances
 
 # -------- search ----------------------------------------------------------------------------------------------
@@ -236,7 +236,7 @@ class _Search:
         """True if all parameters on which the equilibria depend have values."""
         known = self.system.scope.model.exact_parameters()
         needed = [x for name, x in self.system.symbols.parameters.items() if name not in known]
-        return not depends_on_any((*self.whole.equations, *self._fixed.values()), needed)
+        return not depends_on((*self.whole.equations, *self._fixed.values()), needed)
 
     @cached_property
     def values(self) -> dict[Node, Any]:

@@ -48,9 +48,6 @@ from eomgen.mechanics.free_bodies.names_of_reactions import NamedReaction as Nam
 # All reactions of a system
 from eomgen.mechanics.free_bodies.reactions import Reactions as Reactions
 
-# Sums of indeterminate reactions that have a single value: sum of k_i r_i with sum of k_i s_i = 0
-from eomgen.mechanics.free_bodies.reactions import determinate_sums as determinate_sums
-
 # A reaction that the equations of the rigid bodies do not determine
 from eomgen.mechanics.free_bodies.solution import Indeterminate as Indeterminate
 

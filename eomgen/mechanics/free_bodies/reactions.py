@@ -37,7 +37,7 @@ from eomgen.mechanics.free_bodies.solution import (
 from eomgen.mechanics.free_bodies.structure import Structure
 from eomgen.mechanics.free_bodies.wrenches import Component, Effect, normals_of_joint
 from eomgen.mechanics.kinematics import Motion
-from eomgen.mechanics.start import values_where_at_rest
+from eomgen.mechanics.start import ExactStart
 from eomgen.mechanics.state import Numbers
 from eomgen.model import called, declared_at
 from eomgen.symbolic.exact import Solution
@@ -47,7 +47,6 @@ from eomgen.symbolic.expression import (
     Scalar,
     Vector,
     depends_on,
-    depends_on_any,
     derivative,
     is_zero,
     over,
@@ -388,27 +387,27 @@ class Reactions:
                 continue
         return found
 
+    @staticmethod
+    def determinate_sums(stresses: Sequence[Mapping[Any, Scalar]]) -> list[dict[Any, Scalar]]:
+        """Sums of indeterminate reactions that have a single value: sum of k_i r_i with sum of k_i s_i = 0.
 
-def determinate_sums(stresses: Sequence[Mapping[Any, Scalar]]) -> list[dict[Any, Scalar]]:
-    """Sums of indeterminate reactions that have a single value: sum of k_i r_i with sum of k_i s_i = 0.
+        That holds for each of the self-stresses s, which may be added to the reactions. For each stress one reaction
+        that belongs to it alone is chosen as its measure; there is one sum for each of the other reactions.
 
-    That holds for each of the self-stresses s, which may be added to the reactions. For each stress one reaction that
-    belongs to it alone is chosen as its measure; there is one sum for each of the other reactions.
-
-    Args:
-        stresses: {reaction: share} of each.
-    """
-    names = dict.fromkeys(name for stress in stresses for name in stress)
-    alone: list[Any] = []
-    for stress in stresses:
-        own = [name for name in stress if sum(name in other for other in stresses) == 1]
-        alone.append(min(own, key=lambda name: type(stress[name]) is Node, default=None))
-    found = []
-    for name in names:
-        beside = [(stress, own) for stress, own in zip(stresses, alone, strict=True) if name in stress]
-        if name not in alone and all(own is not None for _, own in beside):
-            found.append({name: 1} | {own: over(-stress[name], stress[own]) for stress, own in beside})
-    return found
+        Args:
+            stresses: {reaction: share} of each.
+        """
+        names = dict.fromkeys(name for stress in stresses for name in stress)
+        alone: list[Any] = []
+        for stress in stresses:
+            own = [name for name in stress if sum(name in other for other in stresses) == 1]
+            alone.append(min(own, key=lambda name: type(stress[name]) is Node, default=None))
+        found = []
+        for name in names:
+            beside = [(stress, own) for stress, own in zip(stresses, alone, strict=True) if name in stress]
+            if name not in alone and all(own is not None for _, own in beside):
+                found.append({name: 1} | {own: over(-stress[name], stress[own]) for stress, own in beside})
+        return found
 
 
 def _found(system: System, at: Mapping[Node, Scalar], short: bool, work: int) -> Reactions:
@@ -443,7 +442,7 @@ def _at_rest(balance: Balance, at: Mapping[Node, Scalar], work: int) -> Reaction
     state = {**at, **balance.system.still}
     solution = solution_of_balance(balance, state, work=work)
     if not is_balanced(balance, solution):
-        state = {**values_where_at_rest(balance.system), **at}
+        state = {**ExactStart.values_at_rest(balance.system), **at}
         solution = solution_of_balance(balance, state, work=work)
         if not is_balanced(balance, solution):
             raise unbalanced(balance, solution)
@@ -538,7 +537,7 @@ def _placed_together(balance: Balance, unheld: np.ndarray) -> str:
     system, given = balance.system, balance.system.scope.model.driven_coordinates
     links = [link for link in system.motion.links if share.get(link.name, 0.0) > tolerances.RANK_NEARBY]
     for q in system.symbols.q:
-        moved = [f"'{link.name}'" for link in links if depends_on_any(link.s, (q,))]
+        moved = [f"'{link.name}'" for link in links if depends_on(link.s, (q,))]
         if len(moved) > 1 and q.name not in given:
             return f"'{q.name}' moves {' and '.join(moved)}"
     return ""

@@ -16,7 +16,7 @@ from eomgen.mechanics.free_bodies.velocity_plan import (
     VelocityPlan,
 )
 from eomgen.mechanics.free_bodies.wrenches import Axes, Component, Effect
-from eomgen.mechanics.start import values_where_at_rest
+from eomgen.mechanics.start import ExactStart
 from eomgen.model import BodyPoint, Constraint, declared_at
 from eomgen.symbolic.exact import LinearSystem, Pivots, Solution, readable_all
 from eomgen.symbolic.expression import (
@@ -291,7 +291,7 @@ class Structure:
         if not system.motion.links:
             raise DerivationError("the model has no body: nothing is to be held", "bodies", "declare [bodies.NAME]")
         balance = Balance.of(system)
-        state = values_where_at_rest(system, at)
+        state = ExactStart.values_at_rest(system, at)
         unknowns = balance.unknowns
         table = {(system.motion.index[e.body], e.direction): e for e in balance.equations}
         columns = tuple(c for c in _directions(system) if c in table or not _is_point_that_turns(system, c))

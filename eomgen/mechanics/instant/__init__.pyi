@@ -11,7 +11,6 @@ from eomgen.mechanics.instant.kinematic_state import Readable as Readable
 
 # The motion of a point, seen from a body (or from the ground)
 from eomgen.mechanics.instant.kinematic_state import composition_of as composition_of
-from eomgen.mechanics.instant.mechanism import FIXED as FIXED
 
 # A centre that two lines give, or two others that are at one place
 from eomgen.mechanics.instant.mechanism import FoundPoint as FoundPoint

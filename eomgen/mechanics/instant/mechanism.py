@@ -21,9 +21,6 @@ from eomgen.symbolic.exact import Legibly
 from eomgen.symbolic.expression import Node, Scalar, Vector, is_zero, over, substituted
 from eomgen.symbolic.numeric import Work
 
-FIXED = "0"
-"""Name of the ground among the bodies."""
-
 
 @dataclass(frozen=True)
 class RotationCenter:
@@ -56,6 +53,9 @@ class Mechanism:
         values: values of scalars at the model's parameters.
     """
 
+    FIXED = "0"
+    """Name of the ground among the bodies."""
+
     system: System
     moving: Mapping[Node, Scalar]
     values: ScalarValues
@@ -65,7 +65,7 @@ class Mechanism:
     @cached_property
     def blocks(self) -> dict[str, tuple[str, ...]]:
         """The bodies by the block in which they move, the ground's first; a block has the name of its first body."""
-        found: dict[str, list[str]] = {FIXED: []}
+        found: dict[str, list[str]] = {Mechanism.FIXED: []}
         for body in self.fields:
             home = next((block for block in found if self.is_zero(self._apart(block, body))), None)
             found.setdefault(body if home is None else home, []).append(body)
@@ -82,18 +82,18 @@ class Mechanism:
         }
 
     def _apart(self, block: str, body: str) -> Homogeneous:
-        return self.fields[body] - (Vector.ZERO if block == FIXED else self.fields[block])
+        return self.fields[body] - (Vector.ZERO if block == Mechanism.FIXED else self.fields[block])
 
     def block_of(self, body: str | None) -> str:
         """The block of a body; of the ground (None), and of a point, its own name or "0"."""
         if body is None:
-            return FIXED
+            return Mechanism.FIXED
         return next((name for name, bodies in self.blocks.items() if body in bodies), body)
 
     @property
     def moved(self) -> tuple[str, ...]:
         """The blocks that move."""
-        return tuple(name for name in self.blocks if name != FIXED)
+        return tuple(name for name in self.blocks if name != Mechanism.FIXED)
 
     # -- centres -----------------------------------------------------------------------------------
 

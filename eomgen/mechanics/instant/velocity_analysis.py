@@ -21,7 +21,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import holds_identically
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.instant.quantities import Quantities
-from eomgen.mechanics.start import Start, values_where_at_rest
+from eomgen.mechanics.start import ExactStart, Start
 from eomgen.model import Model, WrittenEquation, freed, is_node
 from eomgen.symbolic.exact import LinearSystem, Pivots, collected_in, legible, readable_all
 from eomgen.symbolic.expression import (
@@ -279,7 +279,7 @@ class InstantKinematics:
         located = {q: numbers[q.name] for q in free.constraints.fixed_by_position if numbers and q not in places}
         exact = by_coordinates or not located
         still = (
-            _still(free, values_where_at_rest(free, {**{q: q for q in located}, **places}))
+            _still(free, ExactStart.values_at_rest(free, {**{q: q for q in located}, **places}))
             if exact
             else _in_numbers(free, numbers)
         )
@@ -305,7 +305,7 @@ def _places(free: System) -> tuple[State, Mapping[str, float]]:
     if not sought:
         return {}, {}
     try:
-        found = values_where_at_rest(system)
+        found = ExactStart.values_at_rest(system)
     except DerivationError:
         Start.of(system)
     short = {q: found[q] for q in sought if q in found and text_size(found[q]) <= SHORT}
@@ -320,7 +320,7 @@ def _in_numbers(free: System, start: Mapping[str, float]) -> State:
     symbols, values = free.symbols, free.scope.model.exact_parameters()
     parameters = {symbols.parameters[name]: Fraction(x) for name, x in values.items()}
     places = {q: Fraction(start[q.name]) for q in symbols.q}
-    still = _still(free, values_where_at_rest(free, places))
+    still = _still(free, ExactStart.values_at_rest(free, places))
     return {node: substituted((x,), parameters)[0] for node, x in still.items()} | parameters
 
 

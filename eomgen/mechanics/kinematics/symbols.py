@@ -39,7 +39,6 @@ from eomgen.symbolic.expression import (
     Vector,
     as_expression,
     depends_on,
-    depends_on_any,
     gradient,
     holds_op,
     is_zero,
@@ -352,10 +351,10 @@ class Scope:
         """
         own = self.mass_properties(body)
         held = (own.m, *(x for row in own.I for x in row))
-        if not depends_on_any(held, (self.symbols.t, *self.symbols.z)):
+        if not depends_on(held, (self.symbols.t, *self.symbols.z)):
             return None
         rates = self.time_derivative(held)
-        if depends_on_any(rates, self.symbols.a):
+        if depends_on(rates, self.symbols.a):
             raise DerivationError(
                 f"the rate of the mass of body '{body}' depends on an acceleration",
                 f"bodies.{body}",

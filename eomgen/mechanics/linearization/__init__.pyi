@@ -6,9 +6,6 @@ from eomgen.mechanics.linearization.linearization import CORNERS as CORNERS
 # The equations of small motions about a reference
 from eomgen.mechanics.linearization.linearization import SmallMotions as SmallMotions
 
-# speeds of matrices whose entries are written as a book does
-from eomgen.mechanics.linearization.modes import MOST_WRITTEN as MOST_WRITTEN
-
 # One frequency: the mode in numbers, and in closed form where it has one
 from eomgen.mechanics.linearization.modes import Frequency as Frequency
 

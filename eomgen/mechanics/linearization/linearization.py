@@ -14,7 +14,7 @@ from eomgen.errors import DerivationError, EomgenError, MissingValues, NotYet, R
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Assembly
 from eomgen.mechanics.dynamics import System, Valueless
-from eomgen.mechanics.equilibrium import standing_system
+from eomgen.mechanics.equilibrium import StaticEquations
 from eomgen.mechanics.free_bodies import SystemFriction
 from eomgen.mechanics.kinematics import Located
 from eomgen.mechanics.linearization.reduction import (
@@ -48,7 +48,7 @@ from eomgen.mechanics.linearization.reference import (
 )
 from eomgen.mechanics.linearization.steady import family_of, steady_start
 from eomgen.mechanics.state import Exact, NumberField, Numbers
-from eomgen.symbolic.expression import Node, ScalarRow, depends_on_any, jacobian, operations, order, substituted
+from eomgen.symbolic.expression import Node, ScalarRow, depends_on, jacobian, operations, order, substituted
 from eomgen.symbolic.numeric import NoValue, dense, evaluate, fifty_digits, tolerances
 
 # -------- linearization ---------------------------------------------------------------------------------------
@@ -111,7 +111,7 @@ class SmallMotions:
         """True if forces change with t about an equilibrium: they are taken as they are at t = 0."""
         equations = self.first.equations
         rows = (*equations.forcing, *equations.gamma, *equations.sigma)
-        return self.reference.at_rest and depends_on_any(rows, (self.first.system.symbols.t,))
+        return self.reference.at_rest and depends_on(rows, (self.first.system.symbols.t,))
 
     @cached_property
     def state_matrix(self) -> np.ndarray:
@@ -387,7 +387,7 @@ def _refuse_carried(first: FirstOrder, reference: ReferenceMotion) -> None:
     Raises:
         DerivationError: it does.
     """
-    if standing_system(reference.system) is reference.system:
+    if StaticEquations.standing(reference.system) is reference.system:
         return
     if wrong := _accelerated(first, reference):
         what = f"what moves by an explicit time accelerates '{wrong}' where all forces balance: nothing is at rest"
@@ -577,9 +577,9 @@ def steady_coordinates(
     t = first.system.symbols.t
     culprit = next((x for x in shifts[0] if changes({x: shifts[0][x]})), t)
     if culprit is t:
-        named = first.system.loads.acting(lambda row: depends_on_any(row, (t,)))
+        named = first.system.loads.acting(lambda row: depends_on(row, (t,)))
         driven = [f"'{name}'" for name, part in coordinates.items() if part.driven]
-        timed = [row.constraint for row in first.system.constraints.rows if depends_on_any((row.velocity,), (t,))]
+        timed = [row.constraint for row in first.system.constraints.rows if depends_on((row.velocity,), (t,))]
         by = " and ".join((*driven, *(f"'{name}'" for name in dict.fromkeys(timed)), *([named] if named else ())))
         raise DerivationError(
             f"coefficients of the small motions change with time{f', by {by}' if by else ''}: there are no modes",
@@ -596,7 +596,7 @@ def _unsteady(
     """Changes of coordinates and t up to later states, if the equations differ at one of these; else none."""
     moving, t, graph = reference.moving, first.system.symbols.t, first.equations
     unit = 1 / max((abs(rate) for rate in moving.values()), default=1)
-    timed = depends_on_any((*graph.forcing, *graph.gamma, *graph.sigma), (t,))
+    timed = depends_on((*graph.forcing, *graph.gamma, *graph.sigma), (t,))
     times = (*TIMES, *LATER) if timed else TIMES
     shifts = [{x: rate * unit * time for x, rate in {**moving, t: 1}.items()} for time in times]
     turns = spinning(reference, choice)

@@ -42,7 +42,6 @@ from eomgen.symbolic.print import text_size
 
 TRIES = 12  # values of the parameters at which the order of frequencies is looked at
 LONGEST = 6_000  # characters of a polynomial whose roots are written
-MOST_WRITTEN = 8  # speeds of matrices whose entries are written as a book does
 MOST_STATES = 8  # of transfer functions in floats
 
 
@@ -63,6 +62,8 @@ class Modes:
         in_full: True if a polynomial and conditions too long to be printed are still brought into their shortest
             form, for machine-readable results; else they stay as they were derived.
     """
+
+    MOST_WRITTEN = 8  # speeds of matrices whose entries are written as a book does
 
     small: SmallMotions
     in_full: bool = True
@@ -257,7 +258,7 @@ class Modes:
 
     def written(self, x: Any) -> Any:
         """An entry as it is printed, as formulas of a book are; of many speeds as it is."""
-        if isinstance(x, float) or len(self.small.numbers.speeds) > MOST_WRITTEN:
+        if isinstance(x, float) or len(self.small.numbers.speeds) > Modes.MOST_WRITTEN:
             return x
         if x not in self._forms:
             self._forms[x] = book_form(x, Work.ENTRY, self.positive)

@@ -14,7 +14,7 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Row
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, WellPosed
-from eomgen.mechanics.equilibrium import Equilibrium, StaticEquations, over_rates
+from eomgen.mechanics.equilibrium import Equilibrium, StaticEquations
 from eomgen.mechanics.free_bodies import equations_of_motion
 from eomgen.mechanics.integrals import position_equations
 from eomgen.mechanics.kinematics import Located
@@ -155,7 +155,7 @@ def relative_rest(equations: EquationsOfMotion, guess: Mapping[str, float] | Non
 
 
 def _place(place: Equilibrium) -> ReferenceMotion:
-    system = over_rates(place.statics.system)
+    system = StaticEquations.over_rates(place.statics.system)
     symbols = system.symbols
     still: dict[Node, Scalar] = {symbols.t: 0, **dict.fromkeys(symbols.u, 0)}
     found = {q: place.exact[q] for q in symbols.places if q in place.exact}

@@ -13,11 +13,5 @@ from eomgen.mechanics.start.exact import Seeds as Seeds
 # The scalars as numbers, None where something in one has no value; nan where it has none itself
 from eomgen.mechanics.start.exact import shown_numbers as shown_numbers
 
-# Derivatives of coordinates and speeds at the start with respect to parameters, or to the start of one of them
-from eomgen.mechanics.start.exact import start_seeds as start_seeds
-
-# Values of t, q, u, a at rest at the start: exact scalars of the parameters
-from eomgen.mechanics.start.exact import values_where_at_rest as values_where_at_rest
-
 # Start of a motion in numbers, and the changes that the constraints made necessary
 from eomgen.mechanics.start.state import Start as Start

@@ -12,7 +12,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import SEEDS, hold_identically
+from eomgen.mechanics.constraints import Assembly, hold_identically
 from eomgen.mechanics.dynamics import System, mass
 from eomgen.mechanics.kinematics import Located, Scope
 from eomgen.mechanics.start.state import Start, following_rates
@@ -128,7 +128,7 @@ class ExactStart:
 
     @cached_property
     def _sought(self) -> tuple[_Sought, ...]:
-        return tuple(_Sought(self.system, self.at_rest, _drawn(self.system, seed)) for seed in SEEDS)
+        return tuple(_Sought(self.system, self.at_rest, _drawn(self.system, seed)) for seed in Assembly.SEEDS)
 
     @property
     def known(self) -> dict[Node, Scalar] | None:
@@ -137,6 +137,60 @@ class ExactStart:
             return self.values or None
         except DerivationError:  # the constraints do not close there: whoever needs a state says so
             return None
+
+    @staticmethod
+    def values_at_rest(system: System, places: Mapping[Node, Scalar] | None = None) -> State:
+        """Values of t, q, u, a at rest at the start: exact scalars of the parameters.
+
+        Args:
+            places: coordinates that are elsewhere than at the start.
+        Raises:
+            DerivationError: the constraints do not close at the start, or not in closed form.
+        """
+        symbols, scope = system.symbols, system.scope
+        sought = system.constraints.fixed_by_position
+        given = scope.with_unit_quaternions(scope.start_values(q for q in symbols.q if q not in sought))
+        state = system.standing({**given, **scope.start_values(symbols.z), **(places or {})})
+        left = [q for q in sought if q not in state]
+        return state | (_closed_in(system, state, left) if left else {})
+
+    @staticmethod
+    def derivatives(system: System, numbers: Mapping[Node, Any], seeds: Seeds, own: str = "") -> dict[Node, Fraction]:
+        """Derivatives of what starts (q, u, z) with respect to parameters, or to the start of one of them.
+
+        Args:
+            numbers: t, parameters, inputs, q and u at the start, with 50 digits.
+            seeds: the changes of parameters and inputs.
+            own: the coordinate, speed or state whose start is changed; "" of none.
+        Raises:
+            DerivationError: the constraints do not determine them.
+        """
+        scope, symbols = system.scope, system.symbols
+
+        def at(scalars: Sequence[Scalar], along: Seeds) -> list[float]:
+            return Numbers(numbers).of(tangent(tuple(scalars), along))
+
+        begun = scope.with_unit_quaternions(scope.start_values())
+        dq = dict(zip(symbols.q, map(Fraction, at([begun[q] for q in symbols.q], seeds)), strict=True))
+        dq |= {q: Fraction(1) for q in symbols.q if q.name == own}
+        rows = [row for row in system.constraints.rows if row.gap is not None and not row.identical]
+        gaps = [row.gap for row in rows if row.gap is not None]
+        sought = system.constraints.fixed_by_position
+        given = {q for q in symbols.q if scope.model.coordinates[q.name].driven}
+        silent = [q for q in symbols.q if q in sought or (q.name != own and scope.model.is_guess(q.name))]
+        silent = [q for q in silent if q not in given]
+        what = own or "the parameter"
+        dq = _kept(gaps, at(gaps, {**seeds, **dq}), silent, dq, numbers, what, _moved(begun, symbols.q, numbers))
+        speeds = Start.speeds_of(system)
+        du = dict(zip(symbols.u, map(Fraction, at([speeds[u] for u in symbols.u], {**seeds, **dq})), strict=True))
+        du |= {u: Fraction(1) for u in symbols.u if u.name == own}
+        rates = [row.velocity for row in system.constraints.closing]
+        silent = [u for u in symbols.u if u.name != own and scope.model.is_guess(u.name)]
+        left = at(rates, {**seeds, **dq, **du})
+        du = _kept(rates, left, silent, du, numbers, what, _moved(speeds, symbols.u, numbers))
+        states = scope.start_values(symbols.z)
+        dz = dict(zip(symbols.z, map(Fraction, at([states[z] for z in symbols.z], seeds)), strict=True))
+        return dq | du | dz | {z: Fraction(1) for z in symbols.z if z.name == own}
 
 
 def declared_start(system: System, *, at_rest: bool = False) -> dict[Node, Scalar]:
@@ -315,44 +369,6 @@ Seeds = Mapping[Node, Scalar]
 """how symbols change: their derivatives, by what is changed"""
 
 
-def start_seeds(system: System, numbers: Mapping[Node, Any], seeds: Seeds, own: str = "") -> dict[Node, Fraction]:
-    """Derivatives of what starts (q, u, z) with respect to parameters, or to the start of one of them.
-
-    Args:
-        numbers: t, parameters, inputs, q and u at the start, with 50 digits.
-        seeds: the changes of parameters and inputs.
-        own: the coordinate, speed or state whose start is changed; "" of none.
-    Raises:
-        DerivationError: the constraints do not determine them.
-    """
-    scope, symbols = system.scope, system.symbols
-
-    def at(scalars: Sequence[Scalar], along: Seeds) -> list[float]:
-        return Numbers(numbers).of(tangent(tuple(scalars), along))
-
-    begun = scope.with_unit_quaternions(scope.start_values())
-    dq = dict(zip(symbols.q, map(Fraction, at([begun[q] for q in symbols.q], seeds)), strict=True))
-    dq |= {q: Fraction(1) for q in symbols.q if q.name == own}
-    rows = [row for row in system.constraints.rows if row.gap is not None and not row.identical]
-    gaps = [row.gap for row in rows if row.gap is not None]
-    sought = system.constraints.fixed_by_position
-    given = {q for q in symbols.q if scope.model.coordinates[q.name].driven}
-    silent = [q for q in symbols.q if q in sought or (q.name != own and scope.model.is_guess(q.name))]
-    silent = [q for q in silent if q not in given]
-    what = own or "the parameter"
-    dq = _kept(gaps, at(gaps, {**seeds, **dq}), silent, dq, numbers, what, _moved(begun, symbols.q, numbers))
-    speeds = Start.speeds_of(system)
-    du = dict(zip(symbols.u, map(Fraction, at([speeds[u] for u in symbols.u], {**seeds, **dq})), strict=True))
-    du |= {u: Fraction(1) for u in symbols.u if u.name == own}
-    rates = [row.velocity for row in system.constraints.closing]
-    silent = [u for u in symbols.u if u.name != own and scope.model.is_guess(u.name)]
-    left = at(rates, {**seeds, **dq, **du})
-    du = _kept(rates, left, silent, du, numbers, what, _moved(speeds, symbols.u, numbers))
-    states = scope.start_values(symbols.z)
-    dz = dict(zip(symbols.z, map(Fraction, at([states[z] for z in symbols.z], seeds)), strict=True))
-    return dq | du | dz | {z: Fraction(1) for z in symbols.z if z.name == own}
-
-
 def _kept(
     scalars: Sequence[Scalar],
     left: Sequence[float],
@@ -397,22 +413,6 @@ def _moved(said: Mapping[Node, Scalar], variables: Sequence[Node], numbers: Mapp
 
 
 DIGITS = 12  # of a speed that a start was given by its constraints
-
-
-def values_where_at_rest(system: System, places: Mapping[Node, Scalar] | None = None) -> State:
-    """Values of t, q, u, a at rest at the start: exact scalars of the parameters.
-
-    Args:
-        places: coordinates that are elsewhere than at the start.
-    Raises:
-        DerivationError: the constraints do not close at the start, or not in closed form.
-    """
-    symbols, scope = system.symbols, system.scope
-    sought = system.constraints.fixed_by_position
-    given = scope.with_unit_quaternions(scope.start_values(q for q in symbols.q if q not in sought))
-    state = system.standing({**given, **scope.start_values(symbols.z), **(places or {})})
-    left = [q for q in sought if q not in state]
-    return state | (_closed_in(system, state, left) if left else {})
 
 
 def _closed_in(system: System, state: State, sought: list[Node]) -> State:

@@ -17,7 +17,6 @@ from eomgen.mechanics.statics.cut_bodies import PlacedPush as PlacedPush
 
 # A section force that is requested
 from eomgen.mechanics.statics.cut_bodies import RequestedSection as RequestedSection
-from eomgen.mechanics.statics.forces_in_sections import KINDS as KINDS
 
 # N, V and M along one body
 from eomgen.mechanics.statics.forces_in_sections import SectionForces as SectionForces

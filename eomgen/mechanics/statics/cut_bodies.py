@@ -14,7 +14,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies import Axes, Balance, Component, Effect
 from eomgen.mechanics.kinematics import BodyLink
-from eomgen.mechanics.statics.forces_in_sections import KINDS, SectionForces
+from eomgen.mechanics.statics.forces_in_sections import SectionForces
 from eomgen.mechanics.statics.member_axis import MemberAxis
 from eomgen.model import Couple, PointForce, SpreadLoad, UniformField, is_node
 from eomgen.symbolic.exact import readable
@@ -407,7 +407,7 @@ def cut_beam(system: System, requested: RequestedSection, acting: Sequence[Actin
     leg = [leg for leg in axis.legs if leg.x == 0 or axis.sizes.sign(x - leg.x) >= 0][-1]
     place, t, n = link.pose.point(leg.place(x)), link.pose.R @ leg.along, link.pose.R @ leg.left
     found, true = list[ActingForce](), dict[Node, Scalar]()
-    for kind, e in zip(KINDS, (t, -n, Vector.ZERO), strict=True):
+    for kind, e in zip(SectionForces.KINDS, (t, -n, Vector.ZERO), strict=True):
         name = str(replace(call, name=kind))
         symbol = system.scope.graph.symbol(name)
         true[symbol] = section.value(kind, x, side or ("before" if kind != "bending_moment" else ""))

@@ -29,7 +29,6 @@ from eomgen.symbolic.expression import Fraction, Node, Scalar, Vector, is_zero, 
 from eomgen.symbolic.numeric import FLOAT, evaluate
 from eomgen.symbolic.print import to_text
 
-KINDS = ("axial_force", "shear_force", "bending_moment")
 HALF, SIXTH = Fraction(1, 2), Fraction(1, 6)
 
 
@@ -101,6 +100,8 @@ class SectionForces:
         axis: of the body.
         pieces: from station to station.
     """
+
+    KINDS = ("axial_force", "shear_force", "bending_moment")
 
     reactions: Reactions
 
@@ -277,7 +278,7 @@ def _piece(
     V = (R @ n, q @ n, HALF * (slope @ n))
     M = (-T, R @ n, HALF * (q @ n), SIXTH * (slope @ n))
     found = (tuple(sizes.simple(c) for c in series) for series in (N, V, M))
-    return SectionPiece(*ends, leg, dict(zip(KINDS, found, strict=True)))
+    return SectionPiece(*ends, leg, dict(zip(SectionForces.KINDS, found, strict=True)))
 
 
 def stations_of(axis: MemberAxis, actions: Sequence[Action], spreads: Sequence[Spread]) -> list[Scalar]:

@@ -17,7 +17,7 @@ from typing import TypeVar
 from eomgen.errors import DerivationError, ExpressionError, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.free_bodies import Effect, NamedReaction, Structure, VelocityPlan
-from eomgen.mechanics.statics.forces_in_sections import KINDS, place_of
+from eomgen.mechanics.statics.forces_in_sections import SectionForces, place_of
 from eomgen.mechanics.statics.member_axis import MemberAxis, Sizes, axis_of, sizes_of
 from eomgen.mechanics.statics.virtual_work import argument_name, name_of
 from eomgen.model import is_node, nearest
@@ -83,7 +83,7 @@ class InfluenceLine:
         requested, along = _way(requested)
         call = _call(requested)
         sizes = sizes_of(structure.system.motion, structure.at)
-        if call.name in KINDS:
+        if call.name in SectionForces.KINDS:
             cut = cut_of(structure, call, sizes)
             plan = structure.released(left_powers(structure, cut))
         else:

@@ -18,15 +18,7 @@ from eomgen.errors import DerivationError, ExpressionError, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Rank
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import (
-    Effect,
-    Indeterminate,
-    NamedReaction,
-    Reactions,
-    Structure,
-    VelocityPlan,
-    determinate_sums,
-)
+from eomgen.mechanics.free_bodies import Effect, Indeterminate, NamedReaction, Reactions, Structure, VelocityPlan
 from eomgen.mechanics.kinematics import SystemScene
 from eomgen.model import (
     FUNCTIONS,
@@ -311,7 +303,7 @@ class StaticReactions:
     def sums(self) -> tuple[StaticSum, ...]:
         """Sums of those that have one value, as far as they are short."""
         found = []
-        for combination in determinate_sums(self.structure.stresses):
+        for combination in Reactions.determinate_sums(self.structure.stresses):
             factors = {j: simplest(k, Work.ANSWER, self.system.scope.positive) for j, k in combination.items()}
             if max(map(text_size, factors.values())) <= LONGEST_FACTOR:
                 value = self.balance.combined(factors, "their sum")

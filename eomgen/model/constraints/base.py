@@ -23,13 +23,6 @@ from eomgen.symbolic.expression import Scalar
 
 
 @dataclass(frozen=True)
-class TouchingPoint:
-    """A point of a body: "rod.end"."""
-
-    point: str
-
-
-@dataclass(frozen=True)
 class TouchingRound:
     """A ball, in the plane a disc; with an axis a thin wheel, with a tube the tyre about its rim; an ellipsoid.
 
@@ -82,13 +75,6 @@ class Groove:
 
 
 @dataclass(frozen=True)
-class BodyLine:
-    """The line of a body, on which a point stays."""
-
-    on: str
-
-
-@dataclass(frozen=True)
 class Thread:
     """A thread, straight from stop to stop: a string or a link.
 
@@ -105,11 +91,30 @@ class Thread:
 
 @dataclass(frozen=True)
 class Meeting:
-    """Two things that touch; `sticks`: they do not slide on one another."""
+    """Two things that touch.
 
-    what: TouchingPoint | TouchingRound
-    surface: FlatSurface | RoundSurface | BodyLine | Groove
+    Args:
+        point: a point of a body, "rod.end"; "": it is
+        ball: a round body.
+        flat, round: the surface that it touches, or
+        groove: the groove that it cuts, or
+        line: the body on whose line the point stays.
+        sticks: they do not slide on one another.
+    """
+
+    point: str = ""
+    ball: TouchingRound | None = None
+    flat: FlatSurface | None = None
+    round: RoundSurface | None = None
+    groove: Groove | None = None
+    line: str | None = None
     sticks: bool = False
+
+    @property
+    def on(self) -> str | None:
+        """The body that is touched; None: the ground."""
+        surface = self.flat or self.round or self.groove
+        return self.line if surface is None else surface.on
 
 
 # -------- base ------------------------------------------------------------------------------------------------

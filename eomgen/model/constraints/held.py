@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 from eomgen.errors import ModelError
 from eomgen.frozen import dataclass
 from eomgen.model.catalog import Catalog, not_in_the_plane, owner_of
-from eomgen.model.constraints.base import BodyLine, Constraint, FlatSurface, Groove, Meeting, TouchingPoint
+from eomgen.model.constraints.base import Constraint, FlatSurface, Groove, Meeting
 from eomgen.model.constraints.pin import alike, held_together, not_turning, others_of
 from eomgen.model.constraints.plane import Touch, left, opposite, same_turn
 from eomgen.model.constraints.rolling import complement, laid_in
@@ -159,7 +159,7 @@ class Slider(Constraint):
 
     def meeting(self) -> Meeting:
         """The point, on the body's line."""
-        return Meeting(TouchingPoint(self.point), BodyLine(self.on))
+        return Meeting(point=self.point, line=self.on)
 
     def rows(self, scene: LoadContext) -> tuple[ConstraintRow, ...]:
         """n . (p - p_A) = 0 for each n across A -> B in the body; the line pushes along n, friction along A -> B.
@@ -218,7 +218,7 @@ class Support(Constraint):
 
     def meeting(self) -> Meeting:
         """The point, on its line or plane."""
-        return Meeting(TouchingPoint(self.point), FlatSurface(None, self.at, self.normal))
+        return Meeting(point=self.point, flat=FlatSurface(None, self.at, self.normal))
 
     def rows(self, scene: LoadContext) -> tuple[ConstraintRow, ...]:
         """n . (p - p_0) = 0, n of unit length; the support pushes along n; friction along t, with t, n as x, y.
@@ -264,9 +264,7 @@ class Skate(Constraint):
 
     def meeting(self) -> Meeting:
         """The point, in the groove that it cuts."""
-        return Meeting(
-            TouchingPoint(self.point), Groove(self.point.rpartition(".")[0] or None, self.along, self.normal)
-        )
+        return Meeting(point=self.point, groove=Groove(self.point.rpartition(".")[0] or None, self.along, self.normal))
 
     def rows(self, scene: LoadContext) -> tuple[ConstraintRow, ...]:
         """n . v = 0; a row of velocities alone, which no gap has for a rate.

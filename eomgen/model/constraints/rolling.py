@@ -504,11 +504,11 @@ class Rolling(Constraint):
         body = TouchingRound(self.body, self._hub, self.radius, self.axis, self.tube, self.ellipsoid)
         flat, track = self.line or self.plane, self.circle
         if flat is not None:
-            return Meeting(body, FlatSurface(self.on, flat.at, flat.normal), not self.slip)
+            return Meeting(ball=body, flat=FlatSurface(self.on, flat.at, flat.normal), sticks=not self.slip)
         if track is None:
-            return Meeting(body, RoundSurface(self.on, None, None), not self.slip)
+            return Meeting(ball=body, round=RoundSurface(self.on, None, None), sticks=not self.slip)
         surface = RoundSurface(self.on, track.at, track.radius, bool(track.inside), track.axis)
-        return Meeting(body, surface, not self.slip)
+        return Meeting(ball=body, round=surface, sticks=not self.slip)
 
     def misplaced(self, scene: LoadContext) -> tuple[str, str]:
         """The warning of a start within a circle that is rolled on outside; ("", "") if there is none."""

@@ -12,9 +12,7 @@ from eomgen.model.joints.base import (
     Column,
     Joint,
     Move,
-    QuaternionTurn,
     Scalars,
-    TurnAbout,
     X,
     Y,
     Z,
@@ -101,8 +99,8 @@ def _orientation(joint: Any, path: DocumentPath, catalog: Catalog) -> Iterator[D
 def turning_moves(joint: Any) -> tuple[Move, ...]:
     """The turns of a joint's orientation, as they are declared."""
     if joint.quaternion is not None:
-        return (QuaternionTurn(joint.quaternion),)
-    return tuple(TurnAbout(AXES[axis], angle) for axis, angle in zip(joint.orientation, joint.angles, strict=True))
+        return (Move(quaternion=joint.quaternion),)
+    return tuple(Move(AXES[axis], angle=angle) for axis, angle in zip(joint.orientation, joint.angles, strict=True))
 
 
 def rotation_by(sequence: str, angles: tuple[Any, ...]) -> Matrix:
@@ -267,7 +265,7 @@ class Universal(Joint):
         return self.angles
 
     def moves(self) -> tuple[Move, ...]:
-        return tuple(map(TurnAbout, self.axes, self.angles))
+        return tuple(Move(axis, angle=angle) for axis, angle in zip(self.axes, self.angles, strict=True))
 
     def variables(self, space: str) -> tuple[Expression, ...]:
         return self.angles

@@ -38,43 +38,24 @@ from eomgen.symbolic.expression import Expression, Matrix, Pose, Vector, cos, ov
 
 
 @dataclass(frozen=True)
-class SlideAlong:
-    """A displacement [m] along an axis that need not have unit length."""
-
-    axis: Any
-    way: Any
-
-
-@dataclass(frozen=True)
-class TurnAbout:
-    """A turn by an angle [rad] about an axis that need not have unit length; None: z."""
-
-    axis: Any
-    angle: Any
-
-
-@dataclass(frozen=True)
-class QuaternionTurn:
-    """A turn by a quaternion of norm 1, scalar first."""
-
-    quaternion: Any
-
-
-@dataclass(frozen=True)
-class WayAlongPieces:
-    """A displacement along lines and arcs, end to end, the first and the last of which go on; the axes do not turn.
+class Move:
+    """A displacement, and a turn: of a screw both along one axis, which need not have unit length.
 
     Args:
-        way: from the beginning of the first piece [m].
-        heading: of the first piece, from x [rad].
+        axis: of both; None: z.
+        way: along the axis, or along lines and arcs from the beginning of the first; None: 0 [m].
+        angle: about the axis; None: 0 [rad].
+        quaternion: of norm 1, scalar first, in place of an angle.
+        heading: of the first of the lines and arcs, from x [rad].
+        pieces: lines and arcs, end to end, the first and the last of which go on; the axes do not turn.
     """
 
-    way: Any
-    heading: Any
-    pieces: Any
-
-
-Move = SlideAlong | TurnAbout | QuaternionTurn | WayAlongPieces
+    axis: Any = None
+    way: Any = None
+    angle: Any = None
+    quaternion: Any = None
+    heading: Any = None
+    pieces: Any = ()
 
 
 @dataclass(frozen=True)
@@ -215,6 +196,11 @@ class Joint(Part):
     def moves(self) -> tuple[Move, ...]:
         """The declared moves of the joint, from the (turned) parent's joint frame to the child's."""
         raise self._not_yet()
+
+    @property
+    def moves_from_parent(self) -> tuple[Move, ...]:
+        """The fixed rotations, then the moves of the joint."""
+        return (*(Move(each.axis, angle=each.angle) for each in self.turned or ()), *self.moves())
 
     def variables(self, space: str) -> tuple[Expression, ...]:
         """The joint's variables s, f of them."""

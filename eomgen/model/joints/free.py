@@ -28,8 +28,6 @@ from eomgen.model.joints.base import (
     Move,
     PushAlong,
     Scalars,
-    SlideAlong,
-    TurnAbout,
     X,
     Y,
     Z,
@@ -105,10 +103,10 @@ class Free(Joint):
 
     def moves(self) -> tuple[Move, ...]:
         if self.position is None:
-            turning: tuple[Move, ...] = () if self.angle is None else (TurnAbout(None, self.angle),)
-            return (SlideAlong(X, self.x), SlideAlong(Y, self.y), *turning)
+            turning: tuple[Move, ...] = () if self.angle is None else (Move(angle=self.angle),)
+            return (Move(X, self.x), Move(Y, self.y), *turning)
         turning = () if self.orientation is None else turning_moves(self)
-        return (*map(SlideAlong, (X, Y, Z), self.position), *turning)
+        return (*map(Move, (X, Y, Z), self.position), *turning)
 
     def variables(self, space: str) -> tuple[Expression, ...]:
         if space == "space":
@@ -170,7 +168,7 @@ class Fixed(Joint):
         return ()
 
     def moves(self) -> tuple[Move, ...]:
-        return (TurnAbout(self.axis, self.angle),)
+        return (Move(self.axis, angle=self.angle),)
 
     def variables(self, space: str) -> tuple[Expression, ...]:
         return ()
@@ -222,7 +220,7 @@ class Planar(Joint):
         return (self.angle,)
 
     def moves(self) -> tuple[Move, ...]:
-        return (SlideAlong(X, self.x), SlideAlong(Y, self.y), TurnAbout(None, self.angle))
+        return (Move(X, self.x), Move(Y, self.y), Move(angle=self.angle))
 
     def variables(self, space: str) -> tuple[Expression, ...]:
         return (self.x, self.y, self.angle)

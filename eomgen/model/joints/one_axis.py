@@ -15,8 +15,6 @@ from eomgen.model.joints.base import (
     Move,
     PushAlong,
     Scalars,
-    SlideAlong,
-    TurnAbout,
     X,
     Y,
     Z,
@@ -187,7 +185,7 @@ class Revolute(AxisJoint):
         return (self.angle,)
 
     def moves(self) -> tuple[Move, ...]:
-        return (TurnAbout(self.axis, self.angle),)
+        return (Move(self.axis, angle=self.angle),)
 
     def variables(self, space: str) -> tuple[Expression, ...]:
         return (self.angle,)
@@ -258,7 +256,7 @@ class Prismatic(AxisJoint):
 
     def moves(self) -> tuple[Move, ...]:
         turn_axis = None if len(self.axis) == 2 else self.axis
-        return (SlideAlong(self.axis, self.displacement), TurnAbout(turn_axis, self.angle))
+        return (Move(self.axis, self.displacement), Move(turn_axis, angle=self.angle))
 
     def variables(self, space: str) -> tuple[Expression, ...]:
         return (self.displacement,)
@@ -331,7 +329,7 @@ class Cylindrical(AxisJoint):
         return (self.angle,)
 
     def moves(self) -> tuple[Move, ...]:
-        return (SlideAlong(self.axis, self.displacement), TurnAbout(self.axis, self.angle))
+        return (Move(self.axis, self.displacement, self.angle),)
 
     def variables(self, space: str) -> tuple[Expression, ...]:
         return (self.displacement, self.angle)
@@ -401,7 +399,7 @@ class Screw(AxisJoint):
         return (self.angle,)
 
     def moves(self) -> tuple[Move, ...]:
-        return (SlideAlong(self.axis, self.pitch * self.angle), TurnAbout(self.axis, self.angle))
+        return (Move(self.axis, self.pitch * self.angle, self.angle),)
 
     def variables(self, space: str) -> tuple[Expression, ...]:
         return (self.angle,)

@@ -13,8 +13,6 @@ from eomgen.model.joints.base import (
     Joint,
     Move,
     Scalars,
-    SlideAlong,
-    WayAlongPieces,
     X,
     Y,
     Z,
@@ -141,7 +139,7 @@ class Path(Joint):
         return ()
 
     def moves(self) -> tuple[Move, ...]:
-        return (WayAlongPieces(self.along, self.heading, self.pieces),)
+        return (Move(way=self.along, heading=self.heading, pieces=self.pieces),)
 
     def variables(self, space: str) -> tuple[Expression, ...]:
         return (self.along,)
@@ -222,7 +220,7 @@ class OnePiece(Path):
     begin: MovingPlace
 
     def moves(self) -> tuple[Move, ...]:
-        return (SlideAlong(X, self.begin[0]), SlideAlong(Y, self.begin[1]), *super().moves())
+        return (Move(X, self.begin[0]), Move(Y, self.begin[1]), *super().moves())
 
     def _begin(self, value: ValueOf) -> Vector:
         return Vector((value(self.begin[0]), value(self.begin[1]), 0))

@@ -22,8 +22,6 @@ from eomgen.model.joints.base import (
     Joint,
     Move,
     Scalars,
-    SlideAlong,
-    TurnAbout,
     X,
     Y,
     Z,
@@ -74,8 +72,8 @@ class Placed(Joint):
         return self.angles or (() if self.angle is None else (self.angle,))
 
     def moves(self) -> tuple[Move, ...]:
-        turned = (TurnAbout(self.axis, self.angle),) if self.orientation is None else turning_moves(self)
-        return (*map(SlideAlong, (X, Y, Z), self.at or ()), *turned)
+        turned = (Move(self.axis, angle=self.angle),) if self.orientation is None else turning_moves(self)
+        return (*map(Move, (X, Y, Z), self.at or ()), *turned)
 
     def variables(self, space: str) -> tuple[Expression, ...]:
         zero = Expression.number(0)

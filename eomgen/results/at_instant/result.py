@@ -27,7 +27,7 @@ from eomgen.documents import (
 )
 from eomgen.errors import MissingValues, RunFailed
 from eomgen.frozen import dataclass
-from eomgen.mechanics.instant import FIXED, BodyMotion, Centrodes, Kinds, KinematicState, Mechanism, RotationCenter
+from eomgen.mechanics.instant import BodyMotion, Centrodes, Kinds, KinematicState, Mechanism, RotationCenter
 from eomgen.model import ModelOrPath, Values, WrittenEquation, model_at
 from eomgen.proof import Certificate, certify, instant_checks
 from eomgen.resources import doing
@@ -405,7 +405,7 @@ class _Panels:
 
     def _blocks(self) -> list[tuple[str, str, tuple[str, ...]]]:
         """(colour, name, bodies) of the moving blocks."""
-        moved = [(name, bodies) for name, bodies in self.mechanism.blocks.items() if name != FIXED]
+        moved = [(name, bodies) for name, bodies in self.mechanism.blocks.items() if name != Mechanism.FIXED]
         return [(COLORS[k % len(COLORS)], name, bodies) for k, (name, bodies) in enumerate(moved)]
 
     def _words(self, panel: Any) -> None:

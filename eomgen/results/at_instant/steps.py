@@ -25,7 +25,6 @@ from eomgen.documents import (
 )
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.instant import (
-    FIXED,
     BodyMotion,
     Centrodes,
     Curve,
@@ -469,10 +468,10 @@ def _blocks(state: KinematicState) -> list[Statement]:
     statements: list[Statement] = []
     for name, bodies in state.mechanism.blocks.items():
         listed = ", ".join(bodies)
-        if name == FIXED and bodies:
+        if name == Mechanism.FIXED and bodies:
             whose = "It belongs" if len(bodies) == 1 else "They belong"
             statements.append(prose(f"At rest: {listed}. {whose} to the ground, 0."))
-        elif name != FIXED and len(bodies) > 1:
+        elif name != Mechanism.FIXED and len(bodies) > 1:
             statements.append(prose(f"{listed} move as one body, called {name}."))
     return statements
 

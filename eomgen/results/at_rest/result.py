@@ -43,13 +43,11 @@ from eomgen.mechanics.equilibrium import (
     Curve,
     Equilibria,
     Equilibrium,
-    ReactionsOrWhy,
-    RestingReaction,
+    RestingReactions,
     Stability,
     StaticEquations,
-    reactions_or_why,
 )
-from eomgen.mechanics.free_bodies import Reactions, RigidBlock, VelocityPlan
+from eomgen.mechanics.free_bodies import RigidBlock, VelocityPlan
 from eomgen.mechanics.start import shown_numbers
 from eomgen.mechanics.statics import InfluenceLine, RestCondition, StaticReaction, StaticReactions, WorkEquation
 from eomgen.model import Model, ModelOrPath, Unit, Values, model_at
@@ -350,9 +348,9 @@ class Resting(Result):
         return self.found.found
 
     @cached_property
-    def reactions(self) -> ReactionsOrWhy | None:
+    def reactions(self) -> RestingReactions | None:
         """Reactions at the first equilibrium; None without any equilibrium."""
-        return reactions_or_why(self.places[0]) if self.places else None
+        return RestingReactions.of(self.places[0]) if self.places else None
 
     def certify(self) -> Certificate:
         """Check the places by the balance of forces, and by the equations of motion: nothing is accelerated there."""
@@ -406,7 +404,7 @@ def _family(place: Equilibrium, curve: Curve) -> dict[str, Any]:
     return {"closed": curve.closed, "places": columns}
 
 
-def _reaction_entries(place: Equilibrium, those: ReactionsOrWhy) -> dict[str, Any]:
+def _reaction_entries(place: Equilibrium, those: RestingReactions) -> dict[str, Any]:
     """JSON entries of the reactions at the first equilibrium."""
     _, reactions, why = those
     numbers = shown_numbers([each.value for each in reactions], place.statics.system.scope.known_exactly)
@@ -497,7 +495,7 @@ ALONG = Law("J*Z = 0", r"J Z = 0")
 MOST_SHOWN = 4  # coordinates of a K that is printed
 
 
-def equilibrium_steps(found: Equilibria, reactions: ReactionsOrWhy | None) -> tuple[Step, ...]:
+def equilibrium_steps(found: Equilibria, reactions: RestingReactions | None) -> tuple[Step, ...]:
     """The balance at rest, every place, its stability, and the reactions at the nearest one."""
     scope = found.statics.system.scope
     reader = Reader(positive=scope.positive)
@@ -678,7 +676,7 @@ def _leading(n: int) -> Law:
 # -- the reactions ---------------------------------------------------------------------------------
 
 
-def _reaction_steps(place: Equilibrium, those: ReactionsOrWhy) -> tuple[Step, ...]:
+def _reaction_steps(place: Equilibrium, those: RestingReactions) -> tuple[Step, ...]:
     reactions, found, why = those
     title = "Reactions at place 1"
     if reactions is None:
@@ -686,15 +684,12 @@ def _reaction_steps(place: Equilibrium, those: ReactionsOrWhy) -> tuple[Step, ..
     if not found:
         return ()
     numbers = shown_numbers([each.value for each in found], place.statics.system.scope.known_exactly)
-    rows = tuple(_reaction_row(place, reactions, *pair) for pair in zip(found, numbers, strict=True))
+    rows: list[tuple[Cell, ...]] = []
+    for reaction, number in zip(found, numbers, strict=True):
+        named, value = reaction.named, reaction.value
+        exact: Cell = "indeterminate" if value is None else value if place.is_exact else ""
+        decimal = "" if number is None else f"{number:.7g}"
+        rows.append((named.name, said(reactions.balance, named), exact, decimal, named.unit))
     grid = narrow_grid(("reaction", "meaning", "exact", "value", "unit"), rows)
     pulls = [prose(f"But '{name}' would have to pull there: it does not hold.") for name in place.pulling]
     return (Step("reactions", title, (prose("By the balance of every body:"), grid, *pulls)),)
-
-
-def _reaction_row(
-    place: Equilibrium, reactions: Reactions, each: RestingReaction, number: float | None
-) -> tuple[Cell, ...]:
-    named = each.named
-    exact: Cell = "indeterminate" if each.value is None else each.value if place.is_exact else ""
-    return named.name, said(reactions.balance, named), exact, "" if number is None else f"{number:.7g}", named.unit

@@ -32,7 +32,6 @@ from eomgen.documents import (
 from eomgen.documents import Entry as Place
 from eomgen.errors import DerivationError
 from eomgen.mechanics.linearization import (
-    MOST_WRITTEN,
     Family,
     Frequency,
     LinearEquations,
@@ -119,7 +118,7 @@ def _equations(modes: Modes) -> Step:
     statements.append(prose(law, "."))
     if small.forced:
         statements.append(prose(FORCED))
-    if len(e.speeds) > MOST_WRITTEN:
+    if len(e.speeds) > Modes.MOST_WRITTEN:
         statements.append(prose(f"M, C and K of {len(e.speeds)} coordinates stand in the result for machines."))
         return Step("equations", "Equations to first order", tuple(statements))
     rows = _rows(modes)
@@ -247,7 +246,7 @@ def _polynomial(modes: Modes) -> Side | None:
     found = modes.polynomial
     if found is not None and (not small.reference.valued or sum(map(text_size, found.coefficients)) <= LONG):
         return _side(_written(modes, found))
-    if not small.reference.valued or len(small.state_matrix) > MOST_WRITTEN:
+    if not small.reference.valued or len(small.state_matrix) > Modes.MOST_WRITTEN:
         return None
     scale = np.linalg.det(np.array(small.numbers.M, dtype=float))
     return _in_numbers(scale * np.poly(small.state_matrix))
@@ -381,7 +380,7 @@ def _or_numbers(modes: Modes, scalars: Sequence[Scalar]) -> list[Side]:
 def _state_space(modes: Modes) -> tuple[Step, ...]:
     """A, B, C_y, D_y of the coordinates as outputs, exact where they are short, else in numbers; without inputs A."""
     e = modes.small.equations
-    shown = _state_matrices(modes) if len(e.speeds) <= MOST_WRITTEN else ()
+    shown = _state_matrices(modes) if len(e.speeds) <= Modes.MOST_WRITTEN else ()
     if not shown:
         return ()
     words = prose(Law("x' = A*x", r"\dot{x} = A x"), ", with x = (", *listed_symbols(e.moving), "):")

@@ -1,17 +1,11 @@
 """Door of the folder: what other folders may import from `eomgen.symbolic.expression`."""
 
-# True where one of the symbols (or nodes) occurs in x
-from eomgen.symbolic.expression.derivatives import FREE as FREE
-
 # Number of operations that an evaluation takes
 from eomgen.symbolic.expression.derivatives import Count as Count
 
 # The symbols of one derivation
 from eomgen.symbolic.expression.derivatives import Symbols as Symbols
 from eomgen.symbolic.expression.derivatives import depends_on as depends_on
-
-# True where one of the symbols (or nodes) occurs in one of them: what they share is looked through once
-from eomgen.symbolic.expression.derivatives import depends_on_any as depends_on_any
 
 # dx/dsymbol
 from eomgen.symbolic.expression.derivatives import derivative as derivative

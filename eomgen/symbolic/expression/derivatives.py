@@ -156,10 +156,10 @@ def symbols_of(outputs: Iterable[Scalar]) -> tuple[Node, ...]:
     return tuple(x for x in order(tuple(outputs)) if x.op == "symbol")
 
 
-def depends_on_any(scalars: Iterable[Scalar], symbols: Collection[Node]) -> bool:
-    """True where one of the symbols (or nodes) occurs in one of them: what they share is looked through once."""
+def depends_on(scalars: Scalar | Iterable[Scalar], symbols: Collection[Node]) -> bool:
+    """True where one of the symbols (or nodes) occurs in a scalar, or in one of several: shared parts are read once."""
+    stack: list[Scalar] = [*scalars] if isinstance(scalars, Iterable) else [scalars]
     symbols = frozenset(symbols)
-    stack: list[Scalar] = [*scalars]
     seen: set[Node] = set()
     while stack:
         y = stack.pop()
@@ -171,11 +171,6 @@ def depends_on_any(scalars: Iterable[Scalar], symbols: Collection[Node]) -> bool
         if y.op != "symbol":
             stack += y.args
     return False
-
-
-def depends_on(x: Scalar, symbols: Collection[Node]) -> bool:
-    """True where one of the symbols (or nodes) occurs in x."""
-    return depends_on_any((x,), symbols)
 
 
 def _dependents(nodes: Sequence[Node], symbols: frozenset[Node]) -> list[Node]:
@@ -335,7 +330,6 @@ PARTIALS: dict[str, tuple[Callable[..., Scalar], ...]] = {
 # The loops run in the order of `Node.index`, never by recursion: a chain of 50 links is thousands of nodes deep.
 
 
-FREE = frozenset(("symbol", "pi", "neg"))
 _INDEX = attrgetter("index")
 
 
@@ -347,6 +341,8 @@ class Count:
         total: at every call, once the parameters are fixed.
         hoisted: apart from those, once for given parameters.
     """
+
+    FREE = frozenset(("symbol", "pi", "neg"))
 
     total: int
     hoisted: int
@@ -395,7 +391,7 @@ def operations(outputs: Iterable[Scalar], parameters: Iterable[Node] = ()) -> Co
     parameters = frozenset(parameters)
     if not parameters:
         symbol = op_bits("symbol")
-        return Count(sum(1 for x in _needed(outputs) if x.op not in FREE and x.ops & symbol), 0)
+        return Count(sum(1 for x in _needed(outputs) if x.op not in Count.FREE and x.ops & symbol), 0)
     constant, fixed, moving = 0, 1, 2  # what a node depends on at most: exact constants, parameters, anything
     kind: dict[Node, int] = {}
     counts = [0, 0, 0]
@@ -408,7 +404,7 @@ def operations(outputs: Iterable[Scalar], parameters: Iterable[Node] = ()) -> Co
             if type(a) is Node and kind[a] > of:
                 of = kind[a]
         kind[x] = of
-        if x.op not in FREE:
+        if x.op not in Count.FREE:
             counts[of] += 1
     return Count(total=counts[moving], hoisted=counts[fixed])
 

@@ -46,9 +46,6 @@ from eomgen.symbolic.print.layout import terms as terms
 # The number of visible marks that the scalars have when they are typeset, names by their letters
 from eomgen.symbolic.print.length import length_of as length_of
 
-# characters
-from eomgen.symbolic.print.names import LONGEST as LONGEST
-
 # A symbol as it is set: \theta with the index A, and what is over it
 from eomgen.symbolic.print.names import Symbol as Symbol
 

@@ -42,6 +42,8 @@ class Symbol:
         below, above: its index and what stands where an exponent would; "" where nothing does.
     """
 
+    LONGEST = 60  # characters
+
     text: str = field(compare=False)
     base: str
     below: str = ""
@@ -92,8 +94,10 @@ class Symbol:
         Raises:
             ExpressionError: it is no symbol of the grammar; `column` counts from 0 within the text.
         """
-        if len(text) > LONGEST:
-            raise ExpressionError(f"a symbol of {len(text)} characters", 0, f"write at most {LONGEST}", len(text))
+        if len(text) > Symbol.LONGEST:
+            raise ExpressionError(
+                f"a symbol of {len(text)} characters", 0, f"write at most {Symbol.LONGEST}", len(text)
+            )
         tokens = _Tokens(text)
         if not tokens.now:
             raise ExpressionError(NOTHING, 0, LIKE)
@@ -171,7 +175,6 @@ def _letters(letters: str) -> str:
 # command.
 
 
-LONGEST = 60  # characters
 ACCENTS = frozenset("\\" + x for x in "dot ddot hat bar tilde vec widehat overline".split())
 STYLES = frozenset("\\" + x for x in "mathrm mathit mathbf mathsf mathcal".split())
 OTHERS = "ell hbar infty partial ast star circ bullet dagger prime parallel perp".split()
