@@ -46,7 +46,7 @@ def answers(model: eomgen.Model, time: float | None) -> dict[str, float]:
     return first | last | asked | hits | impulses | ends
 
 
-@sampled(4)
+@sampled(7)
 @pytest.mark.slow
 @pytest.mark.parametrize("name", MACHINES)
 def test_a_machine_of_a_stranger_gives_the_numbers_found_without_us(name, tmp_path):
