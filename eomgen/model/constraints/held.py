@@ -320,7 +320,10 @@ class Limit(Constraint):
             )
         given = {name for name, part in catalog.table("coordinates").items() if part is not None and part.driven}
         given |= {part.drives() for part in catalog.table("constraints").values() if part is not None}
-        moving = joint.variable_of(field).names & catalog.table("coordinates").keys()
+        variable = joint.variable_of(field)
+        if variable is None:  # of a quaternion: the joint refuses its limits
+            return
+        moving = variable.names & catalog.table("coordinates").keys()
         if moving and moving <= given and (self.upper or limits.low is None or limits.high is None):
             what = f"'{min(moving)}' is driven: no stop can hold the joint of '{self.body}' where its motion leads on"
             yield Diagnostic(where, what, "leave out the limits, or the motion")
