@@ -37,11 +37,12 @@ from eomgen.proof.in_numbers import InNumbers
 from eomgen.proof.posed_model import misplaced
 from eomgen.proof.states import own_start
 from eomgen.simulation import Phase, PhaseModel, ReactionColumns, sliding_velocity
-from eomgen.symbolic.expression import Scalar, State
+from eomgen.symbolic.expression import Scalar, State, is_zero
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 
 STATES = 100  # of a phase that are looked at
 STEPS, MOST_STEPS = 1000, 50_000  # of an impact that is followed in small steps
+MOST_IMPULSES = 20  # of joints that are looked at
 STEPPED = 0.01  # of the speeds before: so far the result of small steps may be off
 LOW = 1e2 * tolerances.COMPUTED  # [of the coordinates] a flight that need not be followed
 
@@ -208,18 +209,27 @@ def _state(system: System, values: Mapping[str, float], p: np.ndarray, t: float)
 # -- from phase to phase ---------------------------------------------------------------------------
 
 
-def changes_follow_impulses(phases: Sequence[Phase], apart: System, contacts: Sequence[str]) -> Iterator[Check]:
+def changes_follow_impulses(
+    phases: Sequence[Phase],
+    apart: System,
+    contacts: Sequence[str],
+    impulses: Mapping[float, Mapping[str, float]],
+) -> Iterator[Check]:
     """Check that only constraints, and contacts that touch, change the momentum between phases; none with one phase.
 
     Args:
         apart: the model without its contacts that can end.
         contacts: their names.
+        impulses: of each impact by its instant; those of joints are held against the momenta of the bodies.
     """
     tally = Tally("changes of contact follow impulses that only push", "momenta of the bodies")
+    joints = Tally("impulses of joints change the momenta of the bodies", "momenta of the bodies")
     for before, after in pairwise(phases):
-        bodies = _Bodies(apart, tuple(contacts), before, after)
+        bodies, own = _Bodies(apart, tuple(contacts), before, after), impulses.get(after.start, {})
         tally.add(f"t = {after.start:.6g} s", bodies.wrong)
-    return tally.checks()
+        for body in bodies.on_joints_alone(own) if joints.held < MOST_IMPULSES else ():
+            joints.add(f"{body}, t = {after.start:.6g} s", partial(bodies.gains_otherwise, body, own))
+    yield from (*tally.checks(), *joints.checks())
 
 
 @dataclass(frozen=True)
@@ -264,6 +274,33 @@ class _Bodies:
                 pushes.append(found[0][0])
                 frees += [J for J, v in found[1:] if abs(v) <= tolerances.OPEN_GAP * size]
         return self._left(pushes, frees, early, late)
+
+    def on_joints_alone(self, impulses: Mapping[str, float]) -> list[str]:
+        """The bodies on which joints act in an impact, all with their impulses, and no force of anything else."""
+        rows = (*self.system.constraints.rows, *(row for own in self._rows.values() for row in own))
+        pushed = {name for row in rows for name, W in row.wrenches if any(not is_zero(x) for x in W.f)}
+        joints = (name for name in self._joints_at if name not in pushed)
+        return [name for name in joints if all(f"impulse_x({x})" in impulses for x in self._joints_at[name])]
+
+    @property
+    def _joints_at(self) -> dict[str, list[str]]:
+        """Joint of each body and those that it carries, by their bodies."""
+        links = self.system.motion.links
+        carried = {link.name: [x.name for x in links if x.parent == k] for k, link in enumerate(links)}
+        return {name: [name, *others] for name, others in carried.items()}
+
+    def gains_otherwise(self, body: str, impulses: Mapping[str, float]) -> str:
+        """Message if m (v+ - v-) of a body's mass centre is not its joint's impulse less those that it carries; ""."""
+        mass = self.system.scope.mass_properties(body)
+        momentum = tuple(mass.m * x for x in self.system.motion.velocity((body, mass.com)))
+        early, late = self._numbers(momentum, np.array([self._state(self._end), self._state(self._begin)]))
+        own, *carried = self._joints_at[body]
+        for axis, change in zip("xyz", (late - early).tolist(), strict=True):
+            parts = [impulses.get(f"impulse_{axis}({own})", 0.0)]
+            parts += [-impulses.get(f"impulse_{axis}({name})", 0.0) for name in carried]
+            if abs(change - sum(parts)) > tolerances.OPEN_GAP * (1 + sum(map(abs, parts))):
+                return f"along {axis} its momentum changes by {change:.6g}, its joints give {sum(parts):.6g}"
+        return ""
 
     def _left(self, pushes: list[np.ndarray], frees: list[np.ndarray], early: np.ndarray, late: np.ndarray) -> str:
         """Message if no impulses give the change of momentum: min |J^T Lam - dP|, in units of sqrt(J); ""."""

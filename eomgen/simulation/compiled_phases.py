@@ -14,8 +14,9 @@ from __future__ import annotations
 
 import ctypes
 import threading
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import field
+from functools import partial
 from typing import Any, Protocol
 
 import numpy as np
@@ -23,6 +24,7 @@ import numpy as np
 from eomgen.codegen import Address, RightHandSide, in_c
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
+from eomgen.mechanics.impacts import Jump
 from eomgen.mechanics.kinematics import ContactMode
 from eomgen.model import Table
 from eomgen.resources import PatienceEnded, check_patience, keep_what_there_is
@@ -550,11 +552,17 @@ class CompiledPhases:
             (track,),
         )  # fmt: skip
         if not is_last:
-            after = self._next(done, numbers, following)
+            after = self._next(done, numbers, following, partial(phase.values, end, last))
         return PhaseRun(here, phase, run, bound, after)
 
-    def _next(self, done: DoneTable, numbers: list[float], following: list[float] | None) -> PhaseStart:
-        """The start of the phase after one that is over."""
+    def _next(
+        self, done: DoneTable, numbers: list[float], following: list[float] | None, before: Callable[[], Values]
+    ) -> PhaseStart:
+        """The start of the phase after one that is over.
+
+        Args:
+            before: gives the values at its end.
+        """
         m = self._m
         if following is not None:
             values = following[: self.width]
@@ -562,20 +570,24 @@ class CompiledPhases:
         else:
             values = (self._values if m.stage == BEGINS else self._begins).tolist()
             code = int(PhaseTable.from_address(m.now).code)
-        impact = self._impact(done, numbers[2 * self.width :]) if done.hit else None
         named = dict(zip(self._places, values, strict=False))
+        impact = self._impact(done, numbers[2 * self.width :], before(), named) if done.hit else None
         return PhaseStart(done.end, named, self._configuration(code), impact, done.limit or None)
 
     def _done_after(self, done: DoneTable) -> DoneTable:
         k = (ctypes.addressof(done) - ctypes.addressof(self._done)) // ctypes.sizeof(DoneTable)
         return self._done[k + 1]
 
-    def _impact(self, done: DoneTable, impulses: list[float]) -> Impact:
+    def _impact(self, done: DoneTable, impulses: list[float], before: Values, after: Values) -> Impact:
         free, n = self.models.without_contacts, len(self.names)
         approached = [name for k, name in enumerate(self.names) if done.approached >> k & 1]
         touching = [name for name in free.contacts if done.touching >> self.names.index(name) & 1]
         named = {name: impulses[self.names.index(name)] for name in touching}
-        return Impact(done.end, ", ".join(approached), named | free.named_held(impulses[n:]), done.loss)
+        u = np.array([after.get(speed.name, 0.0) for speed in free.system.symbols.u])
+        jump = Jump(u, {name: np.array([x]) for name, x in named.items()}, np.array(impulses[n:]))
+        impulses_of_joints = free.of_joints(done.end, before, jump)
+        named |= free.named_held(impulses[n:])
+        return Impact(done.end, ", ".join(approached), named | impulses_of_joints, done.loss)
 
     def _cut(self, here: PhaseStart, pending: _Pending, stop: BaseException) -> PhaseRun:
         """The part of a phase that there is where it was stopped on its way."""

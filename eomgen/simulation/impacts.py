@@ -25,11 +25,11 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Row
 from eomgen.mechanics.dynamics import System, assembled_by_recursion
 from eomgen.mechanics.impacts import Hit, ImpactLaw, Jump
-from eomgen.mechanics.kinematics import SystemInertia
+from eomgen.mechanics.kinematics import GROUND, SystemInertia
 from eomgen.model import Contact
 from eomgen.simulation.phase_model import PhaseModel, Values
 from eomgen.simulation.result import Impact
-from eomgen.symbolic.expression import Expression, Scalar, jacobian, substituted
+from eomgen.symbolic.expression import Expression, Scalar, Wrench, is_zero, jacobian, substituted
 from eomgen.symbolic.numeric import tolerances
 
 
@@ -87,7 +87,8 @@ class WithoutContacts:
         after = Jump.of(M, rows[:k], hits, u, ImpactLaw.of(self.system.scope.model.impact, rough))
         size = tolerances.COMPUTED * max(1.0, float(np.max(np.abs(u), initial=0.0)))
         approached = [hit.name for hit in hits if hit.speed(u) < -size]
-        impact = Impact(t, ", ".join(approached), self._named(after), self._lost(t, x, after.u))
+        impulses = {**self._named(after), **self.of_joints(t, values, after)}
+        impact = Impact(t, ", ".join(approached), impulses, self._lost(t, x, after.u))
         rates = self._rates.many(t, self._with_speeds(x, after.u)[None, :], self.p)[0]
         changed = {f"{q.name}'": float(v) for q, v in zip(self.system.symbols.q, rates, strict=True)}
         speeds = {node.name: float(v) for node, v in zip(self.system.symbols.u, after.u, strict=True)}
@@ -175,6 +176,125 @@ class WithoutContacts:
             found[row.constraint if alone else f"{row.constraint} {row.component}"] = x
         return found
 
+    def of_joints(self, t: float, values: Values, after: Jump) -> dict[str, float]:
+        """The impulses of the joints, each on its body: impulse_x(rod), of what holds it from turning impulse_couple.
+
+        What the momenta of all that a joint carries gain, less the impulses of contacts and constraints on it:
+        sum (m dv, d(I w) + r x m dv) - sum Lam W, about its place. A joint whose share is not determined is left out.
+        """
+        system = self.system
+        given = any(not is_zero(P) for P in SystemInertia(system.motion).given_momenta)
+        if given or any(not row.wrenches for row in system.constraints.rows):
+            return {}  # what acts on coordinates acts on no body
+        x, (acting, unknown) = self._x(values), self._acting(after)
+        links, n = system.motion.links, len(system.motion.links)
+        states = np.vstack([x, self._with_speeds(x, after.u)])
+        before, later = (each.reshape(n, 9) for each in self._momenta.many(t, states, self.p))
+        gained = later[:, :6] - before[:, :6]
+        wrenches = iter(self._wrenches.many(t, x[None, :], self.p)[0].reshape(-1, 6))
+        names = [link.name for link in links]
+        for _, pushed in self._pushing:
+            for body in pushed:
+                gained[names.index(body)] -= acting.get(id(pushed), 0.0) * next(wrenches)
+        carried = {k: {k} for k in range(n)}
+        for k in reversed(range(n)):
+            if links[k].parent != GROUND:
+                gained[links[k].parent] += gained[k]
+                carried[links[k].parent] |= carried[k]
+        found: dict[str, float] = {}
+        for k, components in self._held_by_joints.items():
+            own = {names[j] for j in carried[k]}
+            if all(own.isdisjoint(pushed) or (len(pushed) > 1 and own.issuperset(pushed)) for pushed in unknown):
+                force, place = gained[k, :3], before[k, 6:]
+                whole = np.concatenate([force, gained[k, 3:] - np.cross(place, force)])
+                found |= {f"{label}({names[k]})": float(whole[i]) for label, i in components.items()}
+        return found
+
+    def _acting(self, after: Jump) -> tuple[dict[int, float], list[tuple[str, ...]]]:
+        """({what pushes: its impulse}, the bodies on which impulses act that have no one value)."""
+        closing = self.system.constraints.closing
+        values: dict[tuple[str, Any], float] = {
+            (name, k): x for name, own in after.impulses.items() for k, x in enumerate(own.tolist())
+        }
+        values |= {(name, "t"): x for name, x in after.friction.items()}
+        values |= {(row.constraint, row): x for row, x in zip(closing, after.held.tolist(), strict=True)}
+        known = {id(pushed): values.get(key, 0.0) for key, pushed in self._pushing}
+        unknown = [tuple(pushed) for _, pushed in self._pushing if not np.isfinite(known[id(pushed)])]
+        further = (row for row in self.system.constraints.rows if row.status != "closing")
+        unknown += [tuple(dict(row.wrenches)) for row in further if row.wrenches]
+        return {key: x for key, x in known.items() if np.isfinite(x)}, unknown
+
+    @property
+    def _pushing(self) -> list[tuple[tuple[str, Any], dict[str, Wrench]]]:
+        """((whose, which of its rows), the wrench on each body for a unit of its impulse)."""
+        closing, rough = self.system.constraints.closing, () if self._in_space else self.rough
+        found: list[tuple[tuple[str, Any], dict[str, Wrench]]] = self._once(
+            "pushing",
+            lambda: [
+                *(((row.constraint, row), _summed(row.wrenches)) for row in closing),
+                *(((name, k), _summed(row.wrenches)) for name, own in self.rows.items() for k, row in enumerate(own)),
+                *(((contact.name, "t"), self._along(contact.name)) for contact in rough),
+            ],
+        )
+        return found
+
+    def _along(self, contact: str) -> dict[str, Wrench]:
+        """The wrench on each body for a unit of the impulse along the tangent of a contact."""
+        pushed = (self.system.motion.body_wrench(push) for push in self.rows[contact][0].tangent)
+        return _summed([each for each in pushed if each is not None])
+
+    @property
+    def _held_by_joints(self) -> dict[int, dict[str, int]]:
+        """{number of a link: {impulse of its joint: place in (force, couple)}}, of joints that carry something."""
+        found: dict[int, dict[str, int]] = {}
+        forces, couples = ("impulse_x", "impulse_y", "impulse_z"), [f"impulse_couple_{axis}" for axis in "xyz"]
+        for k, link in enumerate(self.system.motion.links):
+            joint = link.joint
+            columns = () if joint is None or not joint.carries_reaction else joint.complement(link.s, self._value)
+            held = [any(not is_zero(column[i]) for column in columns) for i in range(6)]
+            if self._in_space:
+                turns, slides = any(held[:3]), any(held[3:])
+                found[k] = dict(zip(forces, range(3), strict=True)) if slides else {}
+                found[k] |= dict(zip(couples, range(3, 6), strict=True)) if turns else {}
+            else:
+                found[k] = {"impulse_x": 0, "impulse_y": 1} if any(held[3:5]) else {}
+                found[k] |= {"impulse_couple": 5} if held[2] else {}
+        return found
+
+    @property
+    def _value(self) -> Callable[[Any], Scalar]:
+        return self.system.scope.value
+
+    @property
+    def _momenta(self) -> RightHandSide:
+        """Momentum of each body, its moment about the origin, and the place of its joint, ground axes."""
+
+        def entries() -> tuple[Scalar, ...]:
+            motion, found = self.system.motion, list[Scalar]()
+            for link in motion.links:
+                mass = self.system.scope.mass_properties(link.name)
+                P = mass.m * motion.velocity((link.name, mass.com))
+                turning = link.pose.R @ (mass.I @ link.twist.w) + link.pose.point(mass.com).cross(P)
+                found += [*P, *turning, *link.pose.point(link.point)]
+            return tuple(found)
+
+        return self._function("momenta", entries)
+
+    @property
+    def _wrenches(self) -> RightHandSide:
+        """Force and couple about the origin of each push, ground axes."""
+
+        def entries() -> tuple[Scalar, ...]:
+            found: list[Scalar] = []
+            for _, pushed in self._pushing:
+                for body, W in pushed.items():
+                    pose = self.system.motion.link(body).pose
+                    moved = W.turned(pose.R).moved(pose.p)
+                    found += [*moved.f, *moved.tau]
+            return tuple(found)
+
+        return self._function("wrenches", entries)
+
     def _lost(self, t: float, x: np.ndarray, u: np.ndarray) -> float:
         """T before less T after."""
         T = self._energy.many(t, np.vstack([x, self._with_speeds(x, u)]), self.p)[:, 0]
@@ -244,3 +364,11 @@ class WithoutContacts:
             lambda: RightHandSide.of(Program.of(scalars(), self.system.symbols, inputs=self.system.inputs), "numpy"),
         )
         return found
+
+
+def _summed(wrenches: Sequence[tuple[str, Wrench]]) -> dict[str, Wrench]:
+    """The sum of the wrenches on each body."""
+    found: dict[str, Wrench] = {}
+    for body, W in wrenches:
+        found[body] = W if body not in found else found[body].plus(W)
+    return found

@@ -133,8 +133,9 @@ class Impact:
     Args:
         t: the instant [s].
         contact: what closed; of several at once all names, with commas between.
-        impulses: of contacts by name, of further rows and constraints with more rows than one "NAME component"
-            [N s, of couples N m s]; nan where only their sum has a value.
+        impulses: of contacts by name, of further rows and constraints with more rows than one "NAME component", of
+            joints on their bodies "impulse_x(rod)", "impulse_couple(rod)" [N s, of couples N m s]; nan where only
+            their sum has a value.
         loss: of kinetic energy [J].
     """
 

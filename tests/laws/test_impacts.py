@@ -732,3 +732,85 @@ def test_names_that_no_impact_has_and_impacts_that_rub_are_undecided():
     rough = eomgen.loads(HEAD + DUMBBELL.replace('restitution = "e"', 'restitution = "e"\nfriction = 0.3'))
     found = eomgen.verify(rough, "x_after' = x'")
     assert found.verdict == "undecided" and "friction has a part in the impact" in found.reason
+
+
+# -- impulses of joints ----------------------------------------------------------------------------
+
+LIFT = """
+parameters = { m = 2, M = 3, d = 0.4, e = 0.25, g = 9.81 }
+coordinates = { y = { start = 0.5 } }
+bodies.lift = { mass = "M", joint = { kind = "prismatic", axis = [0, 1], displacement = "y", LIMITS } }
+[bodies.load]
+shape = { kind = "particle", mass = "m" }
+points.foot = ["-d", 0]
+joint = { kind = "fixed", on = "lift", point = "foot" }
+"""
+FALLS = 'limits = [0, "inf"], restitution = "e"'
+
+
+def test_a_weld_takes_the_impulse_and_the_couple_of_what_it_carries():
+    """A load m at d beside the slide: (m (1 + e) v, d m (1 + e) v); the slide takes the couple, the stop (M + m)."""
+    result = run(LIFT.replace("LIMITS", FALLS), 0.5)
+    change, found = 1.25 * math.sqrt(2 * G * 0.5), result.impacts[0].impulses
+    assert found["lift_low"] == pytest.approx(5 * change) and found["impulse_x(lift)"] == pytest.approx(0, abs=1e-12)
+    assert (found["impulse_x(load)"], found["impulse_y(load)"]) == pytest.approx((0, 2 * change), abs=1e-12)
+    assert found["impulse_couple(load)"] == pytest.approx(0.4 * 2 * change)
+    assert found["impulse_couple(lift)"] == pytest.approx(0.4 * 2 * change)
+
+
+@pytest.mark.slow
+def test_the_impulses_of_joints_in_a_run_are_those_of_the_formulas():
+    """A loop: numbers by the momenta of what each joint carries, formulas by the balance of every body."""
+    closing = CRANK.replace("{ dependent = true, near = -0.2 }", "-0.2").replace(
+        "{ dependent = true, near = 1 }", "1.2"
+    )
+    found, result = derived(CRANK), run(closing, 0.5)
+    hit, last = result.impacts[0], result.phases[0].last
+    values = {"m": 1, "r": 0.3, "l": 1, "e": 0.4, "a": last["a"], "b": last["b"], "v": last["a'"]}
+    assert found["joints"].keys() == {"crank", "rod", "piston"}
+    for name, (x, y) in found["joints"].items():
+        for axis, text in (("x", x), ("y", y)):
+            formula = parse(text.replace("a'", "v"))
+            due = formula.value_at({letter: values[letter] for letter in formula.names})
+            assert hit.impulses[f"impulse_{axis}({name})"] == pytest.approx(due, rel=1e-6, abs=1e-9)
+
+
+TAIL = """
+parameters = { m = 2, l = 1, e = 0.5, g = 9.81 }
+coordinates = { x = { speed = 1 }, y = 1, phi = 0.3, psi = 1 }
+[bodies.bar]
+mass = "m"
+inertia = "m*l^2/12"
+points = { a = ["-l/2", 0], b = ["l/2", 0] }
+joint = { kind = "planar", x = "x", y = "y", angle = "phi" }
+[bodies.tail]
+shape = { kind = "rod", mass = "m", length = "l" }
+joint = { kind = "revolute", on = "bar.b", point = "start", angle = "psi" }
+[constraints.floor]
+kind = "support"
+point = "bar.a"
+normal = [0, 1]
+at = [0, 0]
+unilateral = true
+restitution = "e"
+friction = 0.2
+"""
+
+
+def test_the_impulse_of_a_hinge_is_the_momentum_of_what_it_carries_where_the_impact_rubs():
+    """d(m v) of the tail; that of the bar is what the floor and the hinge leave it."""
+    result = run(TAIL, 0.6)
+    hit, early, late = result.impacts[0], result.phases[0].last, result.phases[1].first
+
+    def of_tail(state):
+        w = state["phi'"] + state["psi'"]
+        along, across = state["phi"], state["phi"] + state["psi"]
+        x = state["x'"] - state["phi'"] * math.sin(along) / 2 - w * math.sin(across) / 2
+        y = state["y'"] + state["phi'"] * math.cos(along) / 2 + w * math.cos(across) / 2
+        return 2 * np.array([x, y])
+
+    of_hinge = np.array([hit.impulses[f"impulse_{axis}(tail)"] for axis in "xy"])
+    assert of_hinge == pytest.approx(of_tail(late) - of_tail(early), abs=1e-8)
+    of_bar = 2 * np.array([late[q] - early[q] for q in ("x'", "y'")])
+    assert of_bar + of_hinge == pytest.approx([hit.impulses["floor t"], hit.impulses["floor"]], abs=1e-8)
+    assert not any("(bar)" in name for name in hit.impulses)
