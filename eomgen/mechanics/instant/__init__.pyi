@@ -12,15 +12,8 @@ from eomgen.mechanics.instant.kinematic_state import Readable as Readable
 # The motion of a point, seen from a body (or from the ground)
 from eomgen.mechanics.instant.kinematic_state import composition_of as composition_of
 
-# A centre that two lines give, or two others that are at one place
-from eomgen.mechanics.instant.mechanism import FoundPoint as FoundPoint
-
-# A line on which a centre is
-from eomgen.mechanics.instant.mechanism import LineOf as LineOf
-
 # Rigid bodies in motion in the plane, at one configuration
 from eomgen.mechanics.instant.mechanism import Mechanism as Mechanism
-from eomgen.mechanics.instant.mechanism import PointPair as PointPair
 
 # The centre of rotation of a pair of blocks
 from eomgen.mechanics.instant.mechanism import RotationCenter as RotationCenter

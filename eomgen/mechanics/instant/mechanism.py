@@ -6,7 +6,7 @@ c_ij = c_j - c_i. Bodies that move as one are one block; those at rest belong to
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping
 from functools import cached_property
 from itertools import combinations
 
@@ -134,6 +134,13 @@ class Mechanism:
 PointPair = tuple[str, str]
 POINT = "point"
 """The kind of line of a body that is a point, and does not turn."""
+PUSHES = {
+    "n": "the normal through '{}'",
+    "tension": "the line of '{}'",
+    "t": "the line of contact of '{}'",
+    "couple": "the line at infinity, as '{}' lets nothing turn",
+    "point": "the line at infinity, as '{}' is a point that does not turn",
+}
 
 
 @dataclass(frozen=True)
@@ -151,6 +158,13 @@ class LineOf:
     owner: str = ""
     kind: str = ""
     through: tuple[PointPair, PointPair] | None = None
+
+    @property
+    def in_words(self) -> str:
+        """in line with (0, 1) and (1, 2), on the normal through 'A'"""
+        if self.through is not None:
+            return "in line with " + " and ".join(f"({i}, {j})" for i, j in self.through)
+        return "on " + PUSHES.get(self.kind.split(" ")[0], "the line of the force of '{}'").format(self.owner)
 
 
 @dataclass(frozen=True)
@@ -177,6 +191,25 @@ class FoundPoint:
         owners = {line.owner for line in self.lines}
         plain = all(line.kind != "couple" for line in self.lines)
         return owners.pop() if len(owners) == 1 and plain and self.lines[0].owner else ""
+
+    def in_words(self, constraints: Container[str]) -> str:
+        """Reason why the centre is there.
+
+        Args:
+            constraints: the names of constraints; any other owner of a line is a body, by its joint.
+        """
+
+        def called(owner: str) -> str:
+            return f"'{owner}'" if owner in constraints else f"the joint of '{owner}'"
+
+        if self.same:
+            return " and ".join(f"({i}, {j})" for i, j in self.same) + " are at one point"
+        if self.hinge and not is_zero(self.point[2]):
+            return f"{called(self.hinge)} holds the point"
+        owners = [line.owner for line in self.lines]
+        if owners[0] and owners[0] == owners[1]:
+            return f"{called(owners[0])} only lets slide"
+        return "; ".join(line.in_words for line in self.lines)
 
 
 def constructed(mechanism: Mechanism) -> tuple[FoundPoint, ...]:

@@ -1,6 +1,5 @@
 """Door of the folder: what other folders may import from `eomgen.mechanics.linearization`."""
 
-# The equations of motion of a system, and their first derivatives, as graph scalars
 from eomgen.mechanics.linearization.linearization import CORNERS as CORNERS
 
 # The equations of small motions about a reference
@@ -25,15 +24,8 @@ from eomgen.mechanics.linearization.reduction import NAME as NAME
 # M du_i' + C du_i + K dq_i = B dw, dq_i' = F dq_i + E du_i
 from eomgen.mechanics.linearization.reduction import LinearEquations as LinearEquations
 
-# The steady motions that one belongs to
-from eomgen.mechanics.linearization.reference import Family as Family
+# The equations of motion of a system, and their first derivatives, as graph scalars
 from eomgen.mechanics.linearization.reference import FirstOrder as FirstOrder
-
-# The state about which the equations are linearized
-from eomgen.mechanics.linearization.reference import ReferenceMotion as ReferenceMotion
 
 # A, B, C_y, D_y as rows, of scalars of the parameters or of floats
 from eomgen.mechanics.linearization.transfer import StateMatrices as StateMatrices
-
-# q/w = above(s)/below(s), of one coordinate and one input
-from eomgen.mechanics.linearization.transfer import TransferFunction as TransferFunction

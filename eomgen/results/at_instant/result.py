@@ -35,7 +35,6 @@ from eomgen.results.at_instant.steps import (
     cell,
     field_payload,
     field_steps,
-    how_found,
     in_numbers,
     kinds_step,
     mechanism_steps,
@@ -187,7 +186,7 @@ class Kinematics(Result):
             "kind": "infinite" if center.at_infinity else "finite",
             "place": None if center.at_infinity else place,
             "direction": place if center.at_infinity else None,
-            "found": None if found is None else how_found(self.state, found),
+            "found": None if found is None else found.in_words(self.state.system.scope.model.constraints),
         }
 
     def _turn(self, w: Vector, exact: bool = True) -> Any:

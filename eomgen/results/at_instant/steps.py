@@ -28,13 +28,9 @@ from eomgen.mechanics.instant import (
     BodyMotion,
     Centrodes,
     Curve,
-    FoundPoint,
-    Kind,
     Kinds,
     KinematicState,
-    LineOf,
     Mechanism,
-    PointPair,
     Readable,
     RotationCenter,
     composition_of,
@@ -109,16 +105,18 @@ def _sentence(motion: BodyMotion, particle: bool) -> Iterator[Piece]:
     if kind is None:
         yield f"{now} at this instant."
         return
-    yield from _of_particle(kind) if particle else _of_kind(kind, 2 if motion.plane else 3)
+    yield from _of_particle(motion) if particle else _of_kind(motion)
     yield "." if particle or kind.name.endswith(now) or kind.name.startswith(now) else f"; {now} at this instant."
 
 
-def _of_kind(kind: Kind, axes: int) -> Iterator[Piece]:
+def _of_kind(motion: BodyMotion) -> Iterator[Piece]:
+    kind = motion.kind
+    assert kind is not None
     yield kind.name
     if kind.point:
         yield f", {kind.point}"
     if kind.at is not None:
-        yield from (" at ", *_place(kind.at, axes))
+        yield from (" at ", *_place(kind.at, 2 if motion.plane else 3))
     if kind.axis is not None and not (is_zero(kind.axis[0]) and is_zero(kind.axis[1])):
         yield from (", across " if kind.name == "plane motion" else ", along ", *_place(kind.axis, 3))
     if kind.is_helical and kind.pitch is not None:
@@ -127,7 +125,9 @@ def _of_kind(kind: Kind, axes: int) -> Iterator[Piece]:
         yield from _way(kind.way)
 
 
-def _of_particle(kind: Kind) -> Iterator[Piece]:
+def _of_particle(motion: BodyMotion) -> Iterator[Piece]:
+    kind = motion.kind
+    assert kind is not None
     if kind.way is None:
         yield "a point at rest" if kind.name == "rest" else "a point that moves"
         return
@@ -416,13 +416,6 @@ def applied_force(system: System, body: str) -> Vector:
 LONGEST = 60  # characters of a value in a table
 LONGEST_NUMBER = 12
 DIGITS = 6
-PUSHES = {
-    "n": "the normal through '{}'",
-    "tension": "the line of '{}'",
-    "t": "the line of contact of '{}'",
-    "couple": "the line at infinity, as '{}' lets nothing turn",
-    "point": "the line at infinity, as '{}' is a point that does not turn",
-}
 
 
 def mechanism_steps(state: KinematicState) -> tuple[Step, ...]:
@@ -480,7 +473,8 @@ def _blocks(state: KinematicState) -> list[Statement]:
 
 
 def _centers(state: KinematicState, mechanism: Mechanism) -> Step:
-    known = [(mechanism.centers[pair], how_found(state, each)) for pair, each in state.found.items()]
+    constraints = state.system.scope.model.constraints
+    known = [(mechanism.centers[pair], each.in_words(constraints)) for pair, each in state.found.items()]
     left = [(center, "by the velocities") for pair, center in mechanism.centers.items() if pair not in state.found]
     rows = tuple((center.name, *place_cells(state, center), how) for center, how in (*known, *left))
     theory = (
@@ -546,33 +540,6 @@ def _law(shown: Cell) -> Side:
 def _short_text(state: KinematicState, x: Scalar) -> str:
     shown = cell(state, x)
     return shown if isinstance(shown, str) else "..." if isinstance(shown, Omitted) else to_text(x)
-
-
-def how_found(state: KinematicState, found: FoundPoint) -> str:
-    """Why the centre is there."""
-    if found.same:
-        return " and ".join(map(_pair, found.same)) + " are at one point"
-    if found.hinge and not is_zero(found.point[2]):
-        return f"{_called(state, found.hinge)} holds the point"
-    owners = [line.owner for line in found.lines]
-    if owners[0] and owners[0] == owners[1]:
-        return f"{_called(state, owners[0])} only lets slide"
-    return "; ".join(map(_line, found.lines))
-
-
-def _called(state: KinematicState, owner: str) -> str:
-    """A constraint, or the joint of a body."""
-    return f"'{owner}'" if owner in state.system.scope.model.constraints else f"the joint of '{owner}'"
-
-
-def _line(line: LineOf) -> str:
-    if line.through is not None:
-        return "in line with " + " and ".join(map(_pair, line.through))
-    return "on " + PUSHES.get(line.kind.split(" ")[0], "the line of the force of '{}'").format(line.owner)
-
-
-def _pair(pair: PointPair) -> str:
-    return f"({pair[0]}, {pair[1]})"
 
 
 # -- velocities and accelerations ----------------------------------------------------------------------

@@ -26,7 +26,6 @@ from eomgen.documents import (
 from eomgen.errors import DerivationError, ToolMissing, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.linearization import (
-    Family,
     Frequency,
     LinearEquations,
     Mode,
@@ -300,7 +299,7 @@ class Linearization(Result):
                 x.name: {"start": value, "away": float(reference.numbers[x]) - value}
                 for x, value in reference.beside.items()
             },
-            "family": self._family(reference.family),
+            "family": self._family(),
             "coordinates": list(self.coordinates),
             "speeds": list(self.speeds),
             "states": [z.name for z in self.equations.states],
@@ -361,8 +360,9 @@ class Linearization(Result):
             },
         }
 
-    def _family(self, family: Family | None) -> dict[str, Any] | None:
+    def _family(self) -> dict[str, Any] | None:
         """The steady motions that this one belongs to; null where it was not sought, or cannot be written."""
+        family = self.small.reference.family
         if family is None:
             return None
         motions = zip(family.others, family.closed, self.modes.beside, strict=True) if self.valued else ()

@@ -32,13 +32,10 @@ from eomgen.documents import (
 from eomgen.documents import Entry as Place
 from eomgen.errors import DerivationError
 from eomgen.mechanics.linearization import (
-    Family,
     Frequency,
     LinearEquations,
     Mode,
     Modes,
-    ReferenceMotion,
-    TransferFunction,
 )
 from eomgen.mechanics.state import Entries
 from eomgen.proof import PrintedModes
@@ -424,18 +421,18 @@ def _transfers(modes: Modes) -> tuple[Step, ...]:
     s = "s" if exact is None else exact.laplace_variable.name
     statements: list[Statement] = [prose(f"From inputs to coordinates, as functions of {s}:")]
     for f in modes.transfers:
-        statements.append(Formula((Place("W", f.coordinate, f.input), _quotient(modes, f))))
+        statements.append(Formula((Place("W", f.coordinate, f.input), _quotient(modes, f.above, f.below))))
     return (Step("transfer", "Transfer functions", tuple(statements)),)
 
 
-def _quotient(modes: Modes, f: TransferFunction) -> Side:
+def _quotient(modes: Modes, above: Polynomial, below: Polynomial) -> Side:
     exact = modes.small.exact
-    if exact is not None and not any(isinstance(c, float) for c in f.below.coefficients):
-        return _side(over(_written(modes, f.above), _written(modes, f.below)))
-    if not any(f.above.coefficients):
+    if exact is not None and not any(isinstance(c, float) for c in below.coefficients):
+        return _side(over(_written(modes, above), _written(modes, below)))
+    if not any(above.coefficients):
         return 0
-    above, below = (_in_numbers(np.array(p.coefficients[::-1], dtype=float)) for p in (f.above, f.below))
-    return Law(f"({above.text})/({below.text})", rf"\frac{{{above.latex}}}{{{below.latex}}}")
+    up, down = (_in_numbers(np.array(p.coefficients[::-1], dtype=float)) for p in (above, below))
+    return Law(f"({up.text})/({down.text})", rf"\frac{{{up.latex}}}{{{down.latex}}}")
 
 
 # -------- printed modes ---------------------------------------------------------------------------------------
@@ -512,9 +509,8 @@ def reference_step(modes: Modes) -> Step:
         from_start = (_digits(beside[x]), _digits(value - beside[x])) if x in beside and reference.valued else ("", "")
         rows.append((x, exact, _digits(value) if reference.valued else "", *from_start))
     head = ("quantity", "exact", "value", "start", "away from it")
-    statements: list[Statement] = [prose(_words(reference)), narrow_grid(head, rows)]
-    if reference.family is not None:
-        statements += _family(modes, reference.family)
+    statements: list[Statement] = [prose(_words(modes)), narrow_grid(head, rows)]
+    statements += _family(modes)
     if reference.place is not None and reference.place.statics.held:
         statements.append(prose(f"Driven coordinates are held there: {', '.join(reference.place.statics.held)}."))
     if reference.about_equilibrium:
@@ -526,9 +522,11 @@ def reference_step(modes: Modes) -> Step:
     return Step("reference", "Reference", tuple(statements))
 
 
-def _words(reference: ReferenceMotion) -> str:
+def _words(modes: Modes) -> str:
+    reference = modes.small.reference
     if reference.beside is not None:
-        return f"The start is accelerated. {_near(reference)} near it, about which this is:"
+        near = "The steady motion" if reference.about_steady_motion else "The equilibrium"
+        return f"The start is accelerated. {near} near it, about which this is:"
     if reference.about_steady_motion:
         return "The steady motion nearest to the start:"
     if not reference.about_equilibrium:
@@ -538,13 +536,11 @@ def _words(reference: ReferenceMotion) -> str:
     return "The equilibrium nearest to the start:"
 
 
-def _near(reference: ReferenceMotion) -> str:
-    return "The steady motion" if reference.about_steady_motion else "The equilibrium"
-
-
-def _family(modes: Modes, family: Family) -> list[Statement]:
-    """Its conditions, the dependent values, and all motions with the same given values."""
-    found: list[Statement] = []
+def _family(modes: Modes) -> list[Statement]:
+    """The conditions of its family, the dependent values, and all motions with the same given values."""
+    found, family = list[Statement](), modes.small.reference.family
+    if family is None:
+        return found
     if family.conditions and max(map(text_size, family.conditions)) <= LONG_CONDITION:
         words = "it rests where" if _at_rest(modes) else "a motion is steady where"
         zeros = [piece for x in family.zeros for piece in (x, " = 0, ")]
@@ -556,12 +552,14 @@ def _family(modes: Modes, family: Family) -> list[Statement]:
         found.append(prose("As a function of ", *listed_symbols(family.held), ":"))
         found += [Formula((x, value)) for x, value in formulas.items()]
     if len(family.others) > 1 and modes.small.reference.valued:
-        found += _others(modes, family)
+        found += _others(modes)
     return found
 
 
-def _others(modes: Modes, family: Family) -> list[Statement]:
-    """A row for each of them: values, closed forms, stability."""
+def _others(modes: Modes) -> list[Statement]:
+    """A row for each of the family: values, closed forms, stability."""
+    family = modes.small.reference.family
+    assert family is not None
     kind = "equilibria" if _at_rest(modes) else "steady motions"
     words = f"All {kind}" if family.complete else f"{kind.capitalize()} that were found"
     where = f" ({family.where})" if family.where else ""
