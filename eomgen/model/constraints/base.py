@@ -94,11 +94,8 @@ class Meeting:
     """Two things that touch.
 
     Args:
-        point: a point of a body, "rod.end"; "": it is
-        ball: a round body.
-        flat, round: the surface that it touches, or
-        groove: the groove that it cuts, or
-        line: the body on whose line the point stays.
+        point, ball: what touches: a point of a body, "rod.end"; or, where that is "", a round body.
+        flat, round, groove, line: what is touched, one of them: a surface, a groove, or the line of this body.
         sticks: they do not slide on one another.
     """
 
