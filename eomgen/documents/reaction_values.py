@@ -76,7 +76,7 @@ class Readings:
     reader: Reader
     accelerations: Mapping[Node, Scalar]
 
-    @cached_property
+    @property
     def ways(self) -> tuple[Reactions, ...]:
         """Solutions for the reactions of the shown system, the one from few equations first."""
         return _ways(self.shown)
@@ -90,7 +90,7 @@ class Readings:
     def own_sides(self) -> dict[int, Scalar]:
         return self.sides if self.shown is self.system else reactions_by_sides(self.own_ways[0].balance)
 
-    @cached_property
+    @property
     def own_ways(self) -> tuple[Reactions, ...]:
         return self.ways if self.shown is self.system else _ways(self.system)
 

@@ -56,7 +56,6 @@ from eomgen.symbolic.expression import (
     derivative,
     is_zero,
     over,
-    sqrt,
     substituted,
 )
 from eomgen.symbolic.numeric import tolerances
@@ -557,4 +556,4 @@ class WrongItems:
 
 def _size(v: Vector) -> Scalar:
     nonzero = [x for x in v if not is_zero(x)]
-    return nonzero[0] if len(nonzero) == 1 else sqrt(v @ v)
+    return nonzero[0] if len(nonzero) == 1 else v.length

@@ -312,7 +312,7 @@ class Case:
         named = self.system.symbols.parameters.keys() & written.names
         return {} if named else self._values_in(scalars, {n: x for n, x in self._values.items() if x not in (1, -1)})
 
-    @cached_property
+    @property
     def _values(self) -> dict[str, Any]:
         """Exact values of the parameters, by name; those in doubles left out."""
         return {name: x for name, x in self.model.exact_parameters().items() if not isinstance(x, float)}

@@ -30,7 +30,7 @@ from eomgen.judge.diagnosis import (
 )
 from eomgen.judge.terms import FEW, Edits, Term, WrongTerms, term_text, terms_of, wrong_parameters
 from eomgen.mechanics.dynamics import Contribution, Contributions
-from eomgen.model import Body, Leaf, Model, Table
+from eomgen.model import Leaf, Model, Table
 from eomgen.symbolic.expression import (
     Expression,
     Fraction,
@@ -473,13 +473,13 @@ class _Editor:
         body, size = self.model.bodies[name], 2 if self.model.space == "plane" else 3
         mass, points = self.parts.system.scope.mass_properties(name).m, self.parts.operator.base.motion.points[name]
         own = {x: tuple(map(_formula, r[:size])) for x, r in points.items() if x not in ("origin", "center")}
-        made = Body(
+        made = body.altered(
+            shape=None,
+            parts=None,
             mass=_formula(mass),
             center=tuple(map(_formula, com[:size])),
             inertia=tuple(map(_formula, inertia)),
             points=Table(own),
-            joint=body.joint,
-            line=body.line,
         )
         return self._edit(kind, text, PLACED, name, bodies=Table({**self.model.bodies, name: made}))
 

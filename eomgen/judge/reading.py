@@ -242,7 +242,7 @@ class Reading:
 
     system: System
 
-    @cached_property
+    @property
     def vocabulary(self) -> Vocabulary:
         """Names, functions, and how names are set in LaTeX."""
         own_names = [name for name in self.system.scope.names if "(" not in name]  # M( is a table
@@ -277,7 +277,7 @@ class Reading:
         given = in_one_formula(given)
         return given if "\\" in given else self.derived.named_in(given, "c" in self.system.scope.names)
 
-    @cached_property
+    @property
     def letters(self) -> dict[str, Expression]:
         """Names that stand for formulas, the first that says so: outputs of the file and their symbols, symbols of
         reactions, T, V, L, letters of reactions and inertias, B_x, J_O.

@@ -459,7 +459,7 @@ class ActingElement(InNumbers):
             return _energy(self.at((applied.potential,))[0], energy)
         return ""
 
-    @cached_property
+    @property
     def scene(self) -> SystemScene:
         return SystemScene(self.motion, begun=self.system.loads.begun)
 
@@ -485,7 +485,7 @@ class ActingElement(InNumbers):
         springs = element.stiffness is not None and element.damping is None and element.pull is None
         return springs and self._slack == 0
 
-    @cached_property
+    @property
     def measured(self) -> tuple[Any, Any]:
         """(l, l') or (theta, theta')."""
         if not self.element.points:
@@ -506,7 +506,7 @@ class ActingElement(InNumbers):
 
     # -- the law ---------------------------------------------------------------------------------------------
 
-    @cached_property
+    @property
     def law(self) -> tuple[Any, Any]:
         """(T, V); V is None where the element is no spring."""
         element, scope = self.element, self.system.scope

@@ -273,17 +273,17 @@ class _Formulas:
             found.append((*rows, *r, *self.system.scope.time_derivative(r), *spin))
         return found
 
-    @cached_property
+    @property
     def joints(self) -> tuple[Scalar, ...]:
         return tuple(x for joint in self._by_joints for x in joint)
 
-    @cached_property
+    @property
     def speeds(self) -> list[list[Node]]:
         """Speeds on which r' and s of every joint depend."""
         place = frozenset(self.system.scope.symbols.u)
         return [[x for x in symbols_of(joint[12:]) if x in place] for joint in self._by_joints]
 
-    @cached_property
+    @property
     def columns(self) -> tuple[Scalar, ...]:
         """Derivatives of r' and s by these speeds, entry by entry."""
         pairs = zip(self._by_joints, self.speeds, strict=True)
@@ -312,12 +312,12 @@ class _Formulas:
         rotors = SystemInertia(self.system.motion).added_bias
         return tuple(y - x for x, y in zip(acting, rotors, strict=True))
 
-    @cached_property
+    @property
     def rates(self) -> tuple[Scalar, ...]:
         """Velocities of constraint rows."""
         return tuple(row.velocity for row in self.system.constraints.closing)
 
-    @cached_property
+    @property
     def slopes(self) -> tuple[Scalar, ...]:
         """Derivatives by every speed of the parts of constraint rows that are not functions of twists."""
         u = self.system.scope.symbols.u

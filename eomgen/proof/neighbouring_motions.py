@@ -82,12 +82,12 @@ class Differences:
         """The reference, its constraints closed to 50 digits."""
         return self.nearby.going(self.nearby.state({}))
 
-    @cached_property
+    @property
     def _turns(self) -> dict[Node, SmallTurn]:
         """Small rotation for each of its labels among the coordinates."""
         return self._named(self.small.whole.coordinates, "")
 
-    @cached_property
+    @property
     def _spins(self) -> dict[Node, SmallTurn]:
         """Small rotation for each of its labels among the speeds: rates of rotations about fixed axes."""
         return self._named(self.small.whole.speeds, "'")
@@ -103,7 +103,7 @@ class Differences:
         own_names = {*system.symbols.x}
         return {label: known[label.name] for label in labels if label not in own_names}
 
-    @cached_property
+    @property
     def moved(self) -> tuple[Node, ...]:
         """Every coordinate that carries the motion, those that are not requested too."""
         return tuple(x for x in self.small.whole.coordinates if x not in self.small.left_out)

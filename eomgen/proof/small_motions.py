@@ -316,7 +316,7 @@ class _Proof:
         found: np.ndarray = np.linalg.eigvals(self.A)
         return found
 
-    @cached_property
+    @property
     def largest(self) -> float:
         return float(abs(self.values).max(initial=0))
 
@@ -406,7 +406,7 @@ class _Proof:
                 return f"p({float(s):.6g}) = {float(p.at(s)):.10g} against {float(det):.10g}"
         return ""
 
-    @cached_property
+    @property
     def closed(self) -> list[float]:
         """The frequencies in closed form, in numbers."""
         return [number for number, _ in self.modes.closed if number >= 0]
@@ -426,7 +426,7 @@ class _Proof:
 
     # -- stability -------------------------------------------------------------------------------------------
 
-    @cached_property
+    @property
     def growth(self) -> float:
         """The largest real part, of the largest eigenvalue; those that are 0 left out."""
         zeros = sum(x == 0 for x in self.modes.spectrum.eigenvalues)

@@ -162,7 +162,7 @@ class PhaseModels:
             self._slides[configuration] = Slides(self._system(model, configuration), tuple(with_friction), self.p)
         return self._slides[configuration]
 
-    @cached_property
+    @property
     def breakpoints(self) -> tuple[float, ...]:
         """The times of the samples of every motion and input [s]."""
         return self.model.breakpoints
@@ -178,7 +178,7 @@ class PhaseModels:
             return replace(self._origin[0].without_contacts, p=self.p)
         return WithoutContacts(_opened(self.model, dict.fromkeys(self.ends, OPEN)), self.ends, self.p)
 
-    @cached_property
+    @property
     def ends(self) -> tuple[str, ...]:
         """The contacts that can end."""
         return tuple(contact.name for contact in self.model.contacts if contact.unilateral)
@@ -211,7 +211,7 @@ class PhaseModels:
         released = _opened(model, all_open)
         return System.of(released.scope.model, configuration.modes, begun_as=released)
 
-    @cached_property
+    @property
     def _straight(self) -> bool:
         system = System.of(self.model)
         return all(stays_straight(system, constraint) for constraint in self.ends)

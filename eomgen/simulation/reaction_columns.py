@@ -43,7 +43,7 @@ class ReactionColumns:
         """The reactions of the columns, in their order."""
         return NamedReaction.all_of(self.reactions.balance) if self.given is None else self.given
 
-    @cached_property
+    @property
     def names(self) -> tuple[str, ...]:
         return tuple(named.name for named in self.requested)
 
@@ -78,7 +78,7 @@ class ReactionColumns:
         """The components solved for: those free at all states are taken as 0, which changes no other."""
         return [j for j in range(len(self.reactions.components)) if j not in self.reactions.solution.free]
 
-    @cached_property
+    @property
     def _places(self) -> tuple[list[tuple[int, int, Scalar]], list[Scalar], list[tuple[int, int, Scalar]]]:
         """(entries of A, b, entries of C), an entry with its row and column."""
         column, equations = {j: k for k, j in enumerate(self._columns)}, self._equations
@@ -96,7 +96,7 @@ class ReactionColumns:
         columns = set(self._columns)
         return [e for e in self.reactions.balance.equations if not columns.isdisjoint(e.coefficients)]
 
-    @cached_property
+    @property
     def _groups(self) -> list[list[int]]:
         """The rows of A of each body, then each that gives one component."""
         rows: dict[str, list[int]] = {}

@@ -143,7 +143,7 @@ class Constraints:
         still = {u: 0 for u in self.motion.scope.symbols.u}
         return substituted(tuple(row.velocity for row in self.closing), still)
 
-    @cached_property
+    @property
     def gamma(self) -> tuple[Scalar, ...]:
         """J a + gamma = 0: the total derivative of the velocity row at a = 0."""
         return self.motion.scope.time_derivative(tuple(row.velocity for row in self.closing))

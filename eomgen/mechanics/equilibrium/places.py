@@ -103,7 +103,7 @@ class _Search:
     values: Mapping[Node, Any]
     guess: np.ndarray
 
-    @cached_property
+    @property
     def floats(self) -> dict[Node, float]:
         return {node: float(x) for node, x in self.values.items()}
 
@@ -149,11 +149,11 @@ class _Search:
         lengths = {} if unit == 1 else {q: unit for q in statics.q if q not in plain}
         return lengths | {z: size for z, size in sizes.items() if size != 1}
 
-    @cached_property
+    @property
     def _units(self) -> np.ndarray:
         return np.array([float(self._unit.get(x, 1)) for x in self.statics.unknowns])
 
-    @cached_property
+    @property
     def _measured(self) -> _Search:
         """The same in these units, in which a step of 1 is one of the model's own size, be it of mm or of km."""
         if not self._unit:
@@ -178,7 +178,7 @@ class _Search:
         slopes = self._descent.at_one(found[0]) if found else np.zeros((0, 0))
         return self._sorted(found, complete=not found or rank(slopes.T) == len(self.statics.unknowns), where=ANYWHERE)
 
-    @cached_property
+    @property
     def _reduced(self) -> tuple[Scalar, ...] | None:
         """System of as many equations as coordinates, without multipliers; None where there is none.
 
@@ -221,7 +221,7 @@ class _Search:
 
     # -- ranges and guesses ------------------------------------------------------------------------
 
-    @cached_property
+    @property
     def _turning(self) -> frozenset[Node]:
         """Angles after a whole turn of which all equations are the same."""
         equations = [x for x in self.statics.equations if not is_zero(x)]
@@ -232,7 +232,7 @@ class _Search:
             if q not in outside or all(not depends_on(x, (q,)) or has_period(x, q, 2 * q.graph.pi) for x in equations)
         )
 
-    @cached_property
+    @property
     def _angles(self) -> frozenset[Node]:
         """Coordinates in the argument of a sine or cosine."""
         waves = [node for node in order(self.statics.equations) if node.op in ("sin", "cos")]

@@ -226,7 +226,7 @@ class _Search:
             chosen_coordinates(statics, self.values, self._guess.of(statics.q)), indifferent=self._indifferent
         )
 
-    @cached_property
+    @property
     def _slides(self) -> bool:
         """True if constraints restrict velocities without a relation between positions, as those of a knife edge."""
         return bool(self.whole.J) and holds_velocities(self.whole, self.values, self._guess.of(self.whole.q))
@@ -243,11 +243,11 @@ class _Search:
         """Values of the parameters with 50 digits; a trial value for those that have none."""
         return self.system.scope.values_of_parameters(Random(3))
 
-    @cached_property
+    @property
     def floats(self) -> dict[Node, float]:
         return {node: float(x) for node, x in self.values.items()}
 
-    @cached_property
+    @property
     def _fixed(self) -> dict[Node, Scalar]:
         """Driven coordinates, those that nothing holds and those chosen, where they start; these at their guess."""
         scope, free = self.system.scope, {*self._held_by_forces.q} - {*self._chosen.coordinates}
@@ -271,10 +271,6 @@ class _Search:
         fixed = dict(zip(self._fixed, evaluate(tuple(self._fixed.values()), self.floats, FLOAT), strict=True))
         return {**self.floats, **fixed, **dict(zip(self.statics.unknowns, map(float, z), strict=True))}
 
-    @cached_property
-    def _forms(self) -> ClosedForms:
-        return ClosedForms(self.statics, self.values, self._places.turning)
-
     def nearest(self) -> Equilibrium:
         """The place nearest to the guess, alone, of those at which the contacts hold, where there are any.
 
@@ -282,8 +278,9 @@ class _Search:
             DerivationError: there is none.
         """
         first: Equilibrium | None = None
+        forms = ClosedForms(self.statics, self.values, self._places.turning)
         for z in self._places.found:
-            place = self._equilibrium(z, self._forms)
+            place = self._equilibrium(z, forms)
             if place is not None and not place.contradicted:
                 return place
             first = first or place
@@ -296,7 +293,8 @@ class _Search:
         places = replace(places, found=tuple(each_once(self.statics, places.found, self.floats)))
         curves = along_curves(self.statics, places.found, self.floats, places.turning)
         places = replace(places, found=tuple(z for z, _ in curves))
-        pairs = [(self._equilibrium(z, self._forms), curve) for z, curve in curves]
+        forms = ClosedForms(self.statics, self.values, places.turning)
+        pairs = [(self._equilibrium(z, forms), curve) for z, curve in curves]
         found = [replace(each, curve=curve) for each, curve in pairs if each is not None]
         found.sort(key=lambda place: bool(place.contradicted))
         complete = places.complete and (self.valued or len(found) == len(places.found))

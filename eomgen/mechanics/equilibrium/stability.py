@@ -111,7 +111,7 @@ class _Place:
     values: Mapping[Node, Any] | None
     chosen: Chosen | None
 
-    @cached_property
+    @property
     def known(self) -> bool:
         """True if all coordinates and multipliers of the place are exact."""
         return all(x in self.exact for x in self.statics.unknowns)
@@ -187,7 +187,7 @@ class _Place:
         turning = any(q in four for four in scope.quaternions)
         return own, -abs(float(self.state[q])) if turning else 1.0, k
 
-    @cached_property
+    @property
     def _generic_rank(self) -> int:
         """Rank of J where the constraints are not in a special position."""
         if self.statics.beside:  # J is without some of its columns
@@ -263,7 +263,7 @@ class _Place:
         K = self._numeric_K(self._numbers(self.statics.J), along)
         return bool(np.all(abs(K - K.T) <= tolerances.COMPUTED * np.max(abs(K), initial=0)))
 
-    @cached_property
+    @property
     def _is_conservative(self) -> bool:
         """True if the forces that are no gradients by themselves have a potential together."""
         Q = self.statics.unbalanced
@@ -306,7 +306,7 @@ class _Place:
             return by_higher_derivatives(self.statics, self.state)
         return "undecided", "the second variation of V vanishes in some direction"
 
-    @cached_property
+    @property
     def _size_of_terms(self) -> float:
         """The largest second derivative there and near it, against which K is compared."""
         found = [0.0]

@@ -277,7 +277,7 @@ class _Sides:
     def axes(self) -> Axes:
         return Axes(self.balance.system.motion)
 
-    @cached_property
+    @property
     def _needed(self) -> dict[tuple[int, int], Scalar]:
         index = self.balance.system.motion.index
         return {(index[e.body], e.direction): e.needed for e in self.balance.equations}

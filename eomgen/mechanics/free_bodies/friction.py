@@ -235,11 +235,11 @@ class _WithFriction:
     def _single(self) -> list[FrictionContact]:
         return [contact for contact in self.found if not contact.normals]
 
-    @cached_property
+    @property
     def _symbols(self) -> dict[str, Node]:
         return SystemFriction(self.equations.system).round_symbols
 
-    @cached_property
+    @property
     def _normals(self) -> dict[int, Node]:
         """A symbol for N of every contact with friction that has one, by its component."""
         graph = self.equations.system.scope.graph
@@ -298,7 +298,7 @@ class _WithFriction:
     def _multiplier(self, j: int, name: str) -> int | None:
         return _multiplier(self.equations.system, self._balance.components[j], name, self._kept)
 
-    @cached_property
+    @property
     def _kept(self) -> list[int]:
         return Rank(self.equations.system.constraints).regular()
 

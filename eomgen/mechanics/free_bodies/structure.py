@@ -130,12 +130,12 @@ class Structure:
             plans.append(self._plan(xi))
         return tuple(plans)
 
-    @cached_property
+    @property
     def turns_idly(self) -> bool:
         """True if the only motions left are straight bodies turning about their own lines, without work of loads."""
         return bool(self.loose) and all(self._is_idle(plan) for plan in self.loose)
 
-    @cached_property
+    @property
     def is_in_balance(self) -> bool:
         """True if the loads do no work in any motion that nothing resists."""
         return all(plan.vanishes((self._work(plan),)) for plan in self.loose)

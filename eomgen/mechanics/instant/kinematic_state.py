@@ -19,7 +19,7 @@ from eomgen.mechanics.kinematics import (
 from eomgen.mechanics.start import ScalarValues
 from eomgen.model import is_node
 from eomgen.symbolic.exact import Legibly
-from eomgen.symbolic.expression import Matrix, Node, Scalar, State, Vector, sqrt, substituted
+from eomgen.symbolic.expression import Matrix, Node, Scalar, State, Vector, substituted
 from eomgen.symbolic.numeric import Work, tolerances
 from eomgen.symbolic.print import text_size
 
@@ -140,7 +140,7 @@ class KinematicState:
 
     def size(self, v: Vector) -> Scalar:
         """|v|"""
-        return self.simple(sqrt(v @ v))
+        return self.simple(v.length)
 
     @cached_property
     def values(self) -> ScalarValues:
@@ -343,7 +343,7 @@ class BodyMotion:
         if middle is None or self.center is None:
             return None
         arm = self.readable.vector(middle - self.center)
-        return middle, self.readable.scalar(sqrt(arm @ arm))
+        return middle, self.readable.scalar(arm.length)
 
     @cached_property
     def slowest(self) -> tuple[str, str, Scalar] | None:

@@ -127,12 +127,12 @@ class Scope:
         """The parameters whose value is 0."""
         return parameters_of_zero(self.model)
 
-    @cached_property
+    @property
     def combines(self) -> bool:
         """True if some of its speeds are combinations of rates."""
         return any(self.model.speeds[u.name].rate is not None for u in self.symbols.u if u.name in self.model.speeds)
 
-    @cached_property
+    @property
     def rates(self) -> tuple[Scalar, ...]:
         """q' = N u + nu, nq."""
         return tuple(
@@ -145,7 +145,7 @@ class Scope:
         """z' of the states of first order, nz, in q, u, a, z, inputs and t."""
         return tuple(self.names[f"{z.name}'"] for z in self.symbols.z)
 
-    @cached_property
+    @property
     def flow(self) -> dict[Node, Scalar]:
         """The seeds of d/dt at a = 0: q -> q', z -> z', t -> 1, psi' -> psi'' of what has a law."""
         derivatives = {x: tangent((law,), {self.symbols.t: 1})[0] for x, law in self.laws.items()}
@@ -153,7 +153,7 @@ class Scope:
         further = {z: self.names[f"{z.name}'"] for z in self.symbols.z if f"{z.name}'" in self.names}
         return {self.symbols.t: 1, **dict(zip(self.symbols.q, self.rates, strict=True)), **further, **derivatives}
 
-    @cached_property
+    @property
     def given_kinetic(self) -> tuple[tuple[Node, ...], Scalar]:
         """(w, T): the kinetic energies that the model gives, in names w of the rates of all coordinates."""
         w = tuple(self.graph.symbol(f"({q.name}')") for q in self.symbols.q)  # no name of a model has parentheses

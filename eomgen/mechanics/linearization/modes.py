@@ -121,7 +121,7 @@ class Modes:
             in_full=self.in_full,
         )
 
-    @cached_property
+    @property
     def is_conservative(self) -> bool:
         """True if the exact equations hold only M and a symmetric K; False too where they are not known exactly."""
         e = self.small.exact

@@ -319,7 +319,7 @@ class _Writing:
         family = Family(held, self._unknowns, self._conditions, formulas, self._state(held, formulas), self._zeros)
         return self._with_others(family)
 
-    @cached_property
+    @property
     def _independent(self) -> tuple[Node, ...]:
         symbols = self.first.system.symbols
         return (*(symbols.q[k] for k in self.choice.places.free), *(symbols.u[k] for k in self.choice.speeds.free))
@@ -330,13 +330,13 @@ class _Writing:
         q, here = self.first.system.symbols.q, Here.at(self.first, self.choice, self.reference.numbers)
         return tuple(q[self.choice.places.free[j]] for j in here.still)
 
-    @cached_property
+    @property
     def _following(self) -> tuple[Node, ...]:
         """Dependent coordinates that are not driven."""
         symbols, coordinates = self.first.system.symbols, self.first.system.scope.model.coordinates
         return tuple(q for k in self.choice.places.following if not coordinates[(q := symbols.q[k]).name].driven)
 
-    @cached_property
+    @property
     def _fixed(self) -> State | None:
         """Exact values that need not be sought: coordinates on which nothing depends, drives, inputs, zero speeds.
 
@@ -354,12 +354,12 @@ class _Writing:
     def _at(self, state: State) -> Exact:
         return Exact(state, self.first.system.scope.positive, self.reference.numbers)
 
-    @cached_property
+    @property
     def _unknowns(self) -> tuple[Node, ...]:
         fixed = self._fixed or {}
         return (*(x for x in self.moved if x not in fixed), *self._following)
 
-    @cached_property
+    @property
     def _zeros(self) -> tuple[Node, ...]:
         """Held coordinates that are 0, if there are more conditions than unknowns: by symmetry they satisfy some."""
         if len(self._all) <= len(self._unknowns):
@@ -377,7 +377,7 @@ class _Writing:
         positive = self.first.system.scope.positive
         return tuple(simplest(x, Work.VALUE, positive) for x in left if not is_zero(x) and not vanishes(x))
 
-    @cached_property
+    @property
     def _all(self) -> tuple[Scalar, ...]:
         """Expressions that vanish in a steady motion: unbalanced forces, rates and relations."""
         first, choice = self.first, self.choice
@@ -387,7 +387,7 @@ class _Writing:
         left = (*Reducing(first, choice, field).at.unbalanced, *field.of((*rates, *relations)))
         return tuple(x for x in left if not is_zero(x))
 
-    @cached_property
+    @property
     def _located(self) -> Located:
         numbers = {x: float(v) for x, v in self.reference.numbers.items()}
         return Located(numbers, self.first.system.scope.positive)

@@ -60,7 +60,7 @@ class ExactStart:
     system: System
     at_rest: bool = False
 
-    @cached_property
+    @property
     def begun(self) -> Start:
         """q and u in numbers, with the changes that satisfy the constraints; parameters without a value are drawn.
 
@@ -74,13 +74,13 @@ class ExactStart:
         """True if a parameter has no value and is drawn at random."""
         return bool(self._sought[0].drawn)
 
-    @cached_property
+    @property
     def moved(self) -> frozenset[str]:
         """The coordinates and speeds that do not start as they are written, those that the constraints place left
         out."""
         return frozenset(change.name for change in self.begun.changes)
 
-    @cached_property
+    @property
     def numbers(self) -> dict[Node, float]:
         """t, q and u as numbers; {} where a parameter has no value."""
         if self.is_drawn:
@@ -95,7 +95,8 @@ class ExactStart:
         if not self.is_drawn:
             return sought.exact
         try:
-            found = {x: y for x, y in sought.exact.items() if all(each.located.agrees(y, x) for each in others)}
+            located = [each.located for each in others]
+            found = {x: y for x, y in sought.exact.items() if all(each.agrees(y, x) for each in located)}
             return found | self._beside_what_is_drawn(found)
         except DerivationError:  # lengths drawn at random need not close: nothing is known of the start
             return {}
@@ -117,7 +118,7 @@ class ExactStart:
         """True if all coordinates and speeds have a closed form."""
         return all(x in self.exact for x in self.system.symbols.x)
 
-    @cached_property
+    @property
     def values(self) -> dict[Node, Scalar]:
         """t, q and u as scalars, a number where there is no closed form; {} where one has neither."""
         if self.is_exact:
@@ -235,11 +236,11 @@ class _Sought:
         given = {u.name: 0.0 for u in self.system.symbols.u} if self.at_rest else {}
         return Start.of(self.system, self.drawn, given)
 
-    @cached_property
+    @property
     def declared(self) -> dict[Node, Scalar]:
         return declared_start(self.system, at_rest=self.at_rest)
 
-    @cached_property
+    @property
     def located(self) -> Located:
         """The numbers, by which closed forms are recognised."""
         symbols, known = self.system.symbols, self.system.scope.model.exact_parameters(self.drawn)
@@ -260,20 +261,17 @@ class _Sought:
         known = dict(zip(known, substituted(tuple(known.values()), known), strict=True))
         speeds = [u for u in symbols.u if u.name in moved]
         known |= self._speeds(known, speeds) if speeds and not open_ else {}
-        agreeing = {x: value for x, value in known.items() if x is symbols.t or self.located.agrees(value, x)}
+        located = self.located
+        agreeing = {x: value for x, value in known.items() if x is symbols.t or located.agrees(value, x)}
         return {x: value for x, value in agreeing.items() if self._is_defined(value)}
 
     def _is_defined(self, form: Scalar) -> bool:
         """False if a form has no value at the exact values of the parameters: tan(alpha) at pi/2 has one in doubles."""
         try:
-            substituted((form,), self._parameters)
+            substituted((form,), self.system.scope.known_exactly)
         except DerivationError:
             return False
         return True
-
-    @cached_property
-    def _parameters(self) -> dict[Node, Scalar]:
-        return self.system.scope.known_exactly
 
     def _places(self, known: Mapping[Node, Scalar], unknown: Sequence[Node]) -> dict[Node, Scalar]:
         """The coordinates that the constraints place, or move; none where these are fewer than all coordinates."""

@@ -290,7 +290,7 @@ class StaticReactions:
     def system(self) -> System:
         return self.structure.system
 
-    @cached_property
+    @property
     def by_name(self) -> dict[str, StaticReaction]:
         return {reaction.name: reaction for reaction in self.reactions}
 

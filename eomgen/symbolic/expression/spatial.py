@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from typing import Any, ClassVar, overload
 
 from eomgen.frozen import dataclass
+from eomgen.symbolic.expression.formula import sqrt
 from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.expression.rational import Fraction
 
@@ -44,6 +45,11 @@ class Vector(tuple[Any, Any, Any]):
             if (type(x) is not int or x != 0) and (type(y) is not int or y != 0):
                 total = total + x * y
         return total
+
+    @property
+    def length(self) -> Scalar:
+        """|a|"""
+        return sqrt(self @ self)
 
     @property
     def largest(self) -> Any:
