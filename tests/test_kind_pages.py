@@ -13,6 +13,7 @@ from slow_run import sampled
 
 import eomgen
 from eomgen.page.figure import rest_figure
+from eomgen.page.paper import typst_text
 from eomgen.scene.scene import Mark, Scene, frame_at
 from eomgen.study import StateInNumbers
 
@@ -65,6 +66,14 @@ def test_every_kind_has_a_picture(kind, tmp_path):
     frame = frame_at(scene, StateInNumbers.at_start(scene.system))
     assert np.isfinite(frame).all()
     assert kind in NOT_DRAWN or marks_of(kind, scene), f"no mark of it in the picture of '{kind}'"
+
+
+@sampled(10)
+@pytest.mark.parametrize("kind", EVERY)
+def test_what_is_said_of_a_kind_can_be_set_on_paper(kind):
+    """Every command in its formulas has a word in Typst."""
+    report = eomgen.report(kinds.EXAMPLES / f"{kind}.toml", certify=False)
+    assert "$" in typst_text(report)
 
 
 def marks_of(kind: str, scene: Scene) -> list[Mark]:

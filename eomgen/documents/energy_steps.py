@@ -355,7 +355,7 @@ LONGEST_LAW = 400  # characters of a law that is printed
 
 ENERGY = Law("T + V", "T + V")
 ENERGY_AND_WORK = Law("T + V - W", "T + V - W")
-AT_MOST, AT_LEAST = Law("<=", r"\le"), Law(">=", r"\ge")
+AT_MOST, AT_LEAST = Law("<=", r"\leq"), Law(">=", r"\geq")
 JACOBI = Law("sum u_k*dT/du_k - T + V", r"\sum u_{k} \frac{\partial T}{\partial u_{k}} - T + V")
 
 

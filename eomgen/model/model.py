@@ -6,7 +6,7 @@ from importlib import import_module
 from typing import Annotated, Any, ClassVar
 
 from eomgen.errors import DerivationError, EomgenError, Problem
-from eomgen.frozen import RECALLED, dataclass
+from eomgen.frozen import dataclass
 from eomgen.model import constraints, forces
 from eomgen.model.catalog import Catalog
 from eomgen.model.constraints import Constraint
@@ -291,8 +291,8 @@ class Model(Numbers, Connections, UnitsOfNames, Part):
             )
 
     def __getstate__(self) -> dict[str, Any]:
-        """The declared model; what was derived from it (`frozen.recalled`) is derived anew where it is needed."""
-        return {name: value for name, value in self.__dict__.items() if name != RECALLED}
+        """The declared model; what was derived from it is derived anew where it is needed."""
+        return {name: value for name, value in self.__dict__.items() if name in self.__dataclass_fields__}
 
     def __repr__(self) -> str:
         tables = ("bodies", "trusses", "coordinates", "constraints", "forces", "parameters", "outputs")
