@@ -185,8 +185,8 @@ def test_what_a_contact_says_by_its_formula_is_what_the_balance_solved_with_rank
         t, x = phase.track
         own = phase.model.signals
         other = ContactSignals(own.watch, own.functions)
-        other.__dict__["_with_rank"] = frozenset(signal.column for signal in own.watch.signals if signal.column)
-        seen += len(other._with_rank - own._with_rank)
+        other.__dict__["with_rank"] = frozenset(signal.column for signal in own.watch.signals if signal.column)
+        seen += len(other.with_rank - own.with_rank)
         assert own.watched(t, x) == pytest.approx(other.watched(t, x), rel=1e-9, abs=1e-9)
     assert seen
 

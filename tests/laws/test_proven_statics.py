@@ -47,15 +47,16 @@ def test_a_wrong_reaction_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "virtual work" in wrong_checks(BEAM)
 
 
-@pytest.mark.parametrize(("series", "what"), [("V", "other end"), ("M", "dM/dx")])
+@pytest.mark.parametrize(("series", "what"), [("shear_force", "other end"), ("bending_moment", "dM/dx")])
 def test_wrong_section_forces_are_seen(monkeypatch: pytest.MonkeyPatch, series: str, what: str) -> None:
     """N, V, M of what acts behind; dM/dx = V."""
     right = section_forces._piece
 
     def planted(*given: Any) -> Any:
         piece = right(*given)
-        c0, c1, *others = getattr(piece, series)
-        return replace(piece, **{series: (c0, 2 * c1, *others) if series == "M" else (2 * c0, c1, *others)})
+        c0, c1, *others = piece.series[series]
+        wrong = (c0, 2 * c1, *others) if series == "bending_moment" else (2 * c0, c1, *others)
+        return replace(piece, series={**piece.series, series: wrong})
 
     monkeypatch.setattr(section_forces, "_piece", planted)
     assert what in wrong_checks(BEAM)

@@ -74,7 +74,8 @@ def _changing_parts(catalog: Catalog, name: str, body: Any) -> Iterator[Diagnost
     """Diagnostics of masses among parts that change, which would move the mass centre in the body."""
     changes = {"t", *catalog.table("states")}
     for k, piece in enumerate(body.parts or ()):
-        if piece.shape.mass is not None and piece.shape.mass.names & changes:
+        mass = None if piece is None or piece.shape is None else piece.shape.mass
+        if mass is not None and mass.names & changes:
             what = f"the mass of part {k + 1} of body '{name}' changes, and moves the mass centre in the body"
             yield Diagnostic(("bodies", name, "parts", k), what, "make the part a body of its own, fixed to it")
 
