@@ -65,7 +65,7 @@ class Live:
 
     def ended(self, how: int = signal.SIGINT) -> int:
         self.process.send_signal(how)
-        return self.process.wait(10)
+        return self.process.wait(60)
 
 
 @contextmanager
