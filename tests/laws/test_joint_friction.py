@@ -533,3 +533,29 @@ def test_the_normal_force_of_a_rough_slide_keeps_its_sign():
     tan = math.tan(math.asin(math.sin(0.5) / 3))
     for P, N in ((50, -50 * tan / (1 - 0.1 * tan)), (-50, 50 * tan / (1 + 0.1 * tan))):
         assert run_of(model, P) == pytest.approx(N), P
+
+
+HOIST = """
+parameters = { M = 30, J = 0.8, r = 0.2, k = 40000, T_c = 4, h = 3, g = 9.81 }
+coordinates = { phi = 0, y = -2 }
+bodies.drum = { inertia = "J", joint = { kind = "revolute", angle = "phi", friction = { torque = "T_c" } } }
+[bodies.load]
+shape = { kind = "particle", mass = "M" }
+joint = { kind = "prismatic", at = ["r", 0], axis = [0, 1], displacement = "y", limits = ["-h", "inf"] }
+[forces.cable]
+kind = "rope"
+path = [{ body = "drum", radius = "r", turn = "cw" }, "load.center"]
+stiffness = "k"
+length = "start"
+[forces.weight]
+kind = "gravity"
+acceleration = [0, "-g"]
+"""
+
+
+def test_a_stop_that_is_open_at_the_start_holds_nothing():
+    """The load hangs 1 m above its stop: nothing carries it there, though brake and stop together would hold all."""
+    model = eomgen.loads('eomgen = 1\nspace = "plane"\n' + HOIST)
+    with pytest.raises(eomgen.EomgenError, match=r"'load_low'.* open by 1"):
+        eomgen.statics(model)
+    assert eomgen.statics(model, start={"y": -3, "phi": -5}).certify().ok

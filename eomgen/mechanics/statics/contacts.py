@@ -8,7 +8,7 @@ from functools import cached_property
 from itertools import islice, product
 from random import Random
 
-from eomgen.errors import DerivationError, ModelError, UsageError
+from eomgen.errors import DerivationError, MissingValues, ModelError, OpenConstraints, UsageError
 from eomgen.frozen import dataclass, recalled
 from eomgen.mechanics.constraints import Row
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, exact_accelerations
@@ -66,6 +66,20 @@ class ContactsAtStart:
     def at_rest(model: Model) -> ContactModes:
         """Every contact with dry friction sticks."""
         return {contact.name: ContactMode(sense=0) for contact in model.rough_contacts}
+
+    @staticmethod
+    def refuse_open(held: System) -> None:
+        """Refuses a structure at a start where a contact that is taken as closed is open.
+
+        Raises:
+            OpenConstraints: it is named, with where it closes.
+        """
+        try:
+            Start.of(held)
+        except OpenConstraints:
+            raise
+        except (DerivationError, MissingValues, ModelError, UsageError):
+            return  # a start without values, or with a speed: contacts are taken as they are declared
 
     @staticmethod
     def resting(model: Model) -> tuple[str, ...]:

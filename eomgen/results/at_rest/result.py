@@ -49,7 +49,14 @@ from eomgen.mechanics.equilibrium import (
 )
 from eomgen.mechanics.free_bodies import RigidBlock, VelocityPlan
 from eomgen.mechanics.start import shown_numbers
-from eomgen.mechanics.statics import InfluenceLine, RestCondition, StaticReaction, StaticReactions, WorkEquation
+from eomgen.mechanics.statics import (
+    ContactsAtStart,
+    InfluenceLine,
+    RestCondition,
+    StaticReaction,
+    StaticReactions,
+    WorkEquation,
+)
 from eomgen.model import Model, ModelOrPath, Unit, Values, model_at
 from eomgen.proof import (
     Certificate,
@@ -298,6 +305,7 @@ def statics(
         _refuse_for_resting(reaction=reaction, influence=influence)
         return Resting(model, study.equilibria)
     held, _ = study.system.with_drives_held()  # what the model drives is held where it starts
+    ContactsAtStart.refuse_open(held)
     found = StaticReactions.of(held, only=reaction)
     line = None if influence is None else InfluenceLine.of(found.structure, influence)
     return Statics(model, found, line)
@@ -316,9 +324,6 @@ def _refuse_for_resting(**requested: str | None) -> None:
                 fix="without it the equilibria are given",
             )
 
-
-# -------- equilibria -------------------------------------------------------------------------------------------
-# Model -> Resting: the equilibria of a system with degrees of freedom, as a document and as data.
 
 # -------- equilibrium result ----------------------------------------------------------------------------------
 # Model -> Resting: where a system with degrees of freedom is at rest, as a user gets it: step by step, and for
