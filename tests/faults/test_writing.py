@@ -63,7 +63,7 @@ def ways() -> list[tuple[str, str]]:
         for parameter in command.params
         if isinstance(parameter.type, click.Path) and not parameter.type.exists
     ]
-    return found + [(verb, "") for verb in main.commands.keys() - dict(found).keys()]
+    return found + [(verb, "") for verb in main.commands if verb not in dict(found)]
 
 
 def words_of(verb: str, option: str, path: Path, given: dict[str, str]) -> list[str]:
