@@ -472,7 +472,6 @@ READERS = {  # classes beside `Study` that cache more than two things derived of
     "sensitivities.derivatives._Asking": (3, "the small motions and the numbers that all derivatives need"),
     "simulation.columns._Columns": (7, "the program of all columns of a run"),
     "simulation.columns._Formulas": (3, "scalars and their refusals, filled while formulas are read"),
-    "simulation.compiled_phases.CompiledPhases": (4, "code of the phases of many runs, compiled once"),
     "simulation.contacts.ContactEvents": (6, "signals and bounds, at every step"),
     "simulation.contacts.ContactSignals": (6, "signals at the last state, at every step"),
     "simulation.many_runs.ManyStarts": (6, "programs of the start of many runs"),
