@@ -21,9 +21,6 @@ from eomgen.model.constraints.base import Constraint as Constraint
 # Two things that touch
 from eomgen.model.constraints.base import Meeting as Meeting
 
-# A thread, straight from stop to stop: a string or a link
-from eomgen.model.constraints.base import Thread as Thread
-
 # Equilibrium of a node without mass: nobody declares it, and its multiplier is 0
 from eomgen.model.constraints.equation import NodeBalance as NodeBalance
 
@@ -67,38 +64,11 @@ from eomgen.model.fields import Table as Table
 # left = right, as it was written
 from eomgen.model.fields import WrittenEquation as WrittenEquation
 
-# Any action of a force, as it is declared
+# What a force does, in numbers: it pushes along what moves, and turns a body
 from eomgen.model.forces.base import Act as Act
-
-# A couple on a body, in the axes of the ground or of the body that `axes` names; one entry: about z [N m]
-from eomgen.model.forces.base import CoupleOn as CoupleOn
-
-# One tension along the way of a rope, of its stretch
-from eomgen.model.forces.base import ElasticThread as ElasticThread
 
 # Action between two points, or a couple that turns two bodies relative to one another
 from eomgen.model.forces.base import Element as Element
-
-# Mass that enters a body at a point per second, with its velocity relative to the body or against the ground
-from eomgen.model.forces.base import FlowOfMass as FlowOfMass
-
-# A potential energy, or a kinetic one, without a point of application [J]
-from eomgen.model.forces.base import GivenEnergy as GivenEnergy
-
-# Couples of two wheels that mesh with play
-from eomgen.model.forces.base import Meshing as Meshing
-
-# A force per length on a body from one of its points to another, linear between, ground axes [N/m]
-from eomgen.model.forces.base import PushAlongLine as PushAlongLine
-
-# A force at a point, in the axes of the ground or of the body that `axes` names [N]
-from eomgen.model.forces.base import PushAt as PushAt
-
-# An acceleration of the ground's axes that every mass of the bodies feels; None: of all bodies [m/s^2]
-from eomgen.model.forces.base import PushOfMass as PushOfMass
-
-# A generalized force on a coordinate, without a point of application [N or N m]
-from eomgen.model.forces.base import PushOnCoordinate as PushOnCoordinate
 
 # (body or None for the ground, place in its axes)
 from eomgen.model.forces.load import BodyPoint as BodyPoint
@@ -141,9 +111,6 @@ from eomgen.model.joints.base import Joint as Joint
 
 # A displacement, and a turn: of a screw both along one axis
 from eomgen.model.joints.base import Move as Move
-
-# Action along a displacement or an angle of a joint, on the child and opposite on the parent; None: nothing
-from eomgen.model.joints.base import PushAlong as PushAlong
 from eomgen.model.joints.base import Z as Z
 
 # The rotation that turns one after the other make, each about the axes that the one before left

@@ -11,7 +11,7 @@ from typing import Any
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import SystemScene
-from eomgen.model import ElasticThread, Thread
+from eomgen.model import Act
 from eomgen.proof.in_numbers import InNumbers, Pushes, add_push, direction_at, pushed_otherwise, pushes_of
 from eomgen.proof.states import refuse_open
 from eomgen.symbolic.expression import Fraction, State, Vector
@@ -30,13 +30,18 @@ STRUNG = "strings and links touch their guides, keep their length and pull along
 # long as it says.
 
 
-def threads_of(system: System) -> dict[str, Thread]:
-    """Threads of strings and links, by the name of their constraint, where that is closed."""
+def has_threads(system: System) -> bool:
+    """True if a string or link is closed."""
+    return any(True for _ in _threads(system, {}))
+
+
+def _threads(system: System, state: State) -> Iterator[_Strung]:
+    """Strings and links that are closed, at a state."""
     closed = {row.constraint for row in system.constraints.rows}
-    threads = {
-        name: constraint.thread() for name, constraint in system.scope.model.constraints.items() if name in closed
-    }
-    return {name: thread for name, thread in threads.items() if thread is not None}
+    for name, constraint in system.scope.model.constraints.items():
+        thread = constraint.thread() if name in closed else None
+        if thread is not None:
+            yield _Strung(system, state, name, thread.stops, thread.ways, thread.length)
 
 
 def strung_otherwise(system: System, state: State) -> str:
@@ -46,9 +51,9 @@ def strung_otherwise(system: System, state: State) -> str:
         NoValue: something has no value there, or the constraints do not hold.
     """
     refuse_open(system, state)
-    for name, thread in threads_of(system).items():
-        if wrong := _Strung(system, state, name, thread).wrong:
-            return f"'{name}' {wrong}"
+    for strung in _threads(system, state):
+        if wrong := strung.wrong:
+            return f"'{strung.name}' {wrong}"
     return ""
 
 
@@ -70,8 +75,12 @@ class _Stop:
 
 @dataclass(frozen=True)
 class _Strung(InNumbers):
+    """A string, link or rope along its stops; of a string directions of strands, of a link its length may be given."""
+
     name: str
-    thread: Thread
+    stops: tuple[Any, ...]
+    ways: tuple[Any, ...] | None = None
+    length: Any = None
 
     @property
     def wrong(self) -> str:
@@ -97,9 +106,9 @@ class _Strung(InNumbers):
     @property
     def _paid_out(self) -> Any:
         """Rate of the declared length, by the difference of two instants."""
-        if self.thread.length is None:
+        if self.length is None:
             return 0
-        length, t = self._scene.value(self.thread.length), self.system.symbols.t
+        length, t = self._scene.value(self.length), self.system.symbols.t
         step = fifty_digits().number(Fraction(1, 10**15))
         before, after = (
             replace(self, state={**self.state, t: self.one(t) + sign * step}).one(length) for sign in (-1, 1)
@@ -109,9 +118,9 @@ class _Strung(InNumbers):
     @property
     def _wrong_length(self) -> str:
         """Message if the length is not the declared one; ""."""
-        if self.thread.length is None:
+        if self.length is None:
             return ""
-        declared = self.one(self._scene.value(self.thread.length))
+        declared = self.one(self._scene.value(self.length))
         first, second = (stop.center for stop in self._stops)
         apart: Vector = second - first
         square: Any = apart @ apart
@@ -142,7 +151,7 @@ class _Strung(InNumbers):
     @cached_property
     def _ropes(self) -> list[list[tuple[_Stop, _Stop, Vector]]]:
         """The strands of one tension each: (from, to, direction)."""
-        ways = self.thread.ways or (None,) * (len(self._stops) - 1)
+        ways = self.ways or (None,) * (len(self._stops) - 1)
         ropes: list[list[tuple[_Stop, _Stop, Vector]]] = []
         for (first, second), way in zip(pairwise(self._stops), ways, strict=True):
             strand = (first, second, self._direction(first, second) if way is None else self._typed(way))
@@ -196,7 +205,7 @@ class _Strung(InNumbers):
 
     def _declared(self) -> Iterator[_Stop]:
         scene, z = self._scene, self.vector((0, 0, 1))
-        for item in self.thread.stops:
+        for item in self.stops:
             if isinstance(item, str):
                 body, _ = place = scene.place(item)
                 r = scene.position(place)
@@ -214,8 +223,8 @@ class _Strung(InNumbers):
     @property
     def _rigid(self) -> bool:
         """True if all stops are fixed in their bodies."""
-        named = [self._scene.place(item) for item in self.thread.stops if isinstance(item, str)]
-        named += [self._scene.own_place(x.body, None) for x in self.thread.stops if not isinstance(x, str) and x.body]
+        named = [self._scene.place(item) for item in self.stops if isinstance(item, str)]
+        named += [self._scene.own_place(x.body, None) for x in self.stops if not isinstance(x, str) and x.body]
         return not any(self.motion.moves(place) for _, place in named)
 
 
@@ -226,33 +235,32 @@ class _Strung(InNumbers):
 
 
 @dataclass(frozen=True)
-class StretchedRope(InNumbers):
-    """An elastic rope at a state."""
+class RopeInNumbers(InNumbers):
+    """An elastic rope at a state; `slack` is its length without tension, or "start"."""
 
-    act: ElasticThread
+    stops: tuple[Any, ...]
+    slack: Any
 
-    def pulls(self) -> Iterator[tuple[_Stop, Vector, Vector]]:
-        """(stop, where the rope touches it, force on its body) at both ends of every strand."""
-        T = self.tension
+    def pulled(self, tension: Any) -> Iterator[Act]:
+        """What a tension does at both ends of every strand: on the stop, by its moment where the rope touches it."""
         for first, second, d in self._strung.strands:
-            yield first, first.touched(d), T * d
-            yield second, second.touched(d), -T * d
+            for stop, pull in ((first, tension * d), (second, -tension * d)):
+                arm = stop.touched(d) - stop.center
+                yield Act(stop.body, stop.place, pull, arm.cross(pull))
 
     @property
-    def tension(self) -> Any:
-        """k s + c s' where both s and that are above 0, else 0."""
-        scope, act = self.system.scope, self.act
-        k, c = self.at((scope.value(act.stiffness), scope.value(act.damping)))
-        slack = self._begun if isinstance(act.slack, str) else self.one(scope.value(act.slack))
-        s = self._strung.reach - slack
-        if s <= 0:
-            return 0 * s
-        return max(k * s + c * (self._strung.given_out if c else 0), 0 * s)
+    def stretch(self) -> Any:
+        begun = isinstance(self.slack, str)
+        return self._strung.reach - (self._begun if begun else self.one(self.system.scope.value(self.slack)))
+
+    @property
+    def rate(self) -> Any:
+        return self._strung.given_out
 
     @cached_property
     def _strung(self) -> _Strung:
-        slack = None if isinstance(self.act.slack, str) else self.act.slack
-        return _Strung(self.system, self.state, "", Thread(self.act.stops, None, slack))
+        length = None if isinstance(self.slack, str) else self.slack
+        return _Strung(self.system, self.state, "", self.stops, length=length)
 
     @property
     def _begun(self) -> Any:

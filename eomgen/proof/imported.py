@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from eomgen.mechanics.dynamics import EquationsOfMotion
-from eomgen.model import Joint, Model, PushOfMass
+from eomgen.model import Joint, Model
 from eomgen.proof.check import first_wrong
 from eomgen.proof.imported_mjcf import mjcf_otherwise
 from eomgen.proof.posed_model import (
@@ -366,15 +366,13 @@ def unsaid_otherwise(text: str, model: Model, left_out: Mapping[str, Collection[
     from xml.etree import ElementTree
 
     root, posed = ElementTree.fromstring(text), PosedModel(model)
-    acts = {name: force.acts for name, force in model.forces.items()}
-    uniform = {name: [y for y in x if isinstance(y, PushOfMass) and not y.bodies] for name, x in acts.items()}
-    fields = [name for name, x in acts.items() if x and len(uniform[name]) == len(x)]
-    g = [[posed.number(c) for c in (*y.acceleration, None)[:3]] for name in fields for y in uniform[name]]
+    uniform = {name: force.uniform for name, force in model.forces.items() if force.uniform is not None}
+    g = [[posed.number(c) for c in (*of_all, None)[:3]] for of_all in uniform.values()]
     usual = np.allclose(np.sum(g, axis=0) if g else np.zeros(3), G, 0, tolerances.COMPUTED)
     pushes = {name: part.joint.pushes() for name, part in model.bodies.items() if part.joint is not None}
     q = model.coordinates
     due: dict[str, list[str]] = {
-        "forces": [name for name in acts if name not in fields or not usual],
+        "forces": [name for name in model.forces if name not in uniform or not usual],
         "stiffness": [name for name, each in pushes.items() if any(x.stiffness is not None for x in each)],
         "armature": [name for name, each in pushes.items() if any(x.armature is not None for x in each)],
         "restitution": [name for name, part in model.bodies.items() if getattr(part.joint, "restitution", None)],
@@ -405,8 +403,7 @@ def unsaid_otherwise(text: str, model: Model, left_out: Mapping[str, Collection[
 
 def without_units(model: Model) -> str:
     """Message that names a parameter of the weight, or a coordinate of a joint's spring, without a unit; ""."""
-    acts = (act for force in model.forces.values() for act in force.acts)
-    weights = (x for act in acts if isinstance(act, PushOfMass) for x in act.acceleration)
+    weights = (x for force in model.forces.values() for x in force.uniform or ())
     joints = (part.joint for part in model.bodies.values() if part.joint is not None)
     ways = (each.way for joint in joints for each in joint.pushes() if each.way is not None)
     used = {name for x in (*weights, *ways) for name in x.names}

@@ -12,7 +12,7 @@ from typing import Any
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import Motion
-from eomgen.model import Couple, FlowOfMass, PointForce, in_order
+from eomgen.model import Couple, PointForce, in_order
 from eomgen.symbolic.expression import Graph, Matrix, Scalar, State, Vector
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 
@@ -63,15 +63,12 @@ def declared_state_rates(system: System, known: State) -> dict[str, Any]:
     return {name: found[name] for name in system.scope.model.states}
 
 
-def mass_that_enters(system: System, known: State, flow: FlowOfMass) -> Any:
-    """Mass that enters per second: as it is said, or the rate of the body's mass less what is said of others.
+def mass_that_enters(system: System, known: State, body: str) -> Any:
+    """Mass that enters a body per second by flows that do not say it: the rate of its mass less what is said of others.
 
     That rate is a central difference of the declared mass, along t and the states of first order.
     """
     scope, symbols, digits = system.scope, system.symbols, fifty_digits()
-    if flow.rate is not None:
-        return evaluate((scope.value(flow.rate),), known, digits)[0]
-    body = flow.point.partition(".")[0]
     moving = declared_state_rates(system, known)
     steps = {symbols.t: 1, **{z: moving[z.name] for z in symbols.z}}
     ways = [{x: known[x] + h * rate for x, rate in steps.items()} for h in (-STEP, STEP)]

@@ -11,15 +11,15 @@ import numpy as np
 
 from eomgen.codegen import Program, RightHandSide, Solve
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics import EquationsOfMotion, System
+from eomgen.mechanics.dynamics import EquationsOfMotion
 from eomgen.mechanics.free_bodies import SystemFriction
-from eomgen.model import GivenEnergy, PushOfMass
 from eomgen.proof import emitted_code
 from eomgen.proof.check import Check, checked, unchecked
+from eomgen.proof.declared_loads import Declared
 from eomgen.proof.emitted_code import PhaseMotion, TriedState
 from eomgen.proof.identities import energy_function, given_power
 from eomgen.symbolic.expression import Fraction, Scalar, State, depends_on, gradient, is_zero
-from eomgen.symbolic.numeric import evaluate, fifty_digits, tolerances
+from eomgen.symbolic.numeric import tolerances
 
 HALF = Fraction(1, 2)
 PER_STEP = 10  # tolerances of the run that one step may cost
@@ -416,22 +416,20 @@ def followed(
 
 def other_energies(equations: EquationsOfMotion, state: State) -> str:
     """Message if T or V at a state is not that of the bodies and forces; ""."""
-    terms = {"T": [*_of_motion(equations.system)], "V": [*_of_places(equations.system)]}
-    values = iter(evaluate((equations.T, equations.V, *terms["T"], *terms["V"]), state, fifty_digits()))
-    stated = {"T": next(values), "V": next(values)}
-    for letter, parts in terms.items():
-        due = [next(values) for _ in parts]
-        total = sum(due, start=0 * stated[letter])
-        if abs(stated[letter] - total) > tolerances.ZERO_AT_50 * (1 + sum(map(abs, due))):
-            return f"{letter} is {float(stated[letter]):.10g}, that of the bodies {float(total):.10g}"
+    proof = Declared(equations.system, state)
+    parts = {"T": proof.at([*_of_motion(proof)]), "V": [*_of_places(proof)]}
+    for (letter, due), stated in zip(parts.items(), proof.at((equations.T, equations.V)), strict=True):
+        total = sum(due, start=0 * stated)
+        if abs(stated - total) > tolerances.ZERO_AT_50 * (1 + sum(map(abs, due))):
+            return f"{letter} is {float(stated):.10g}, that of the bodies {float(total):.10g}"
     return ""
 
 
-def _of_motion(system: System) -> Iterator[Scalar]:
-    scope = system.scope
-    for force in scope.model.forces.values():
-        yield from (scope.value(act.kinetic) for act in force.acts if isinstance(act, GivenEnergy))
-    for link in system.motion.links:
+def _of_motion(proof: Declared) -> Iterator[Scalar]:
+    scope = proof.system.scope
+    placeless = (force for force in scope.model.forces.values() if force.placeless)
+    yield from (act.kinetic for force in placeless for act in force.acts(proof) if act.kinetic is not None)
+    for link in proof.motion.links:
         mass, w = scope.mass_properties(link.name), link.twist.w
         v = link.twist.at(mass.com).v
         yield HALF * mass.m * (v @ v)
@@ -441,28 +439,20 @@ def _of_motion(system: System) -> Iterator[Scalar]:
             yield HALF * scope.value(push.armature) * rate * rate
 
 
-def _of_places(system: System) -> Iterator[Scalar]:
+def _of_places(proof: Declared) -> Iterator[Any]:
     """Potential energies of weights, given energies and springs in joints, as they are declared.
 
     Elements between points are checked by themselves, and enter with the energy that they state.
     """
-    scope = system.scope
-    for applied in system.loads.applied:
-        for act in scope.model.forces[applied.name].acts:
-            if isinstance(act, PushOfMass):
-                yield from _of_weights(system, act)
-            elif isinstance(act, GivenEnergy):
-                yield scope.value(act.potential)
-            elif applied.potential is not None:
-                yield applied.potential
-    for link in system.motion.links:
+    scope = proof.system.scope
+    for applied in proof.system.loads.applied:
+        force = scope.model.forces[applied.name]
+        if force.by_mass or force.placeless:  # constant along what they move: V = - F . r
+            for act in force.acts(proof):
+                yield from (-f * x for f, x in zip(act.force, proof.at(act.moving), strict=True))
+        elif applied.potential is not None:
+            yield proof.one(applied.potential)
+    for link in proof.system.motion.links:
         for push in () if link.joint is None else link.joint.pushes():
             stretch = scope.value(push.way) - scope.value(push.rest)
-            yield HALF * scope.value(push.stiffness) * stretch * stretch
-
-
-def _of_weights(system: System, act: PushOfMass) -> Iterator[Scalar]:
-    g = system.scope.vector(act.acceleration)
-    for name in act.bodies or [link.name for link in system.motion.links]:
-        mass = system.scope.mass_properties(name)
-        yield -mass.m * (g @ system.motion.position((name, mass.com)))
+            yield proof.one(HALF * scope.value(push.stiffness) * stretch * stretch)

@@ -21,7 +21,7 @@ import numpy as np
 
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics import BodyLink, SystemScene
-from eomgen.model import Couple, Element, Meeting, PointForce, PushAt, PushOfMass, Shape
+from eomgen.model import Couple, Meeting, PointForce, Shape
 from eomgen.proof.at_a_state import NumericState
 from eomgen.proof.check import Check, Tally
 from eomgen.proof.declared_loads import placed_pushes
@@ -36,7 +36,6 @@ HOW = "poses and places in 50 digits, shapes by places inside them"
 LARGE_SYMBOL = 0.5  # of all that is drawn; a symbol is a tenth of it
 GRID = np.linspace(0.0, 1.0, 9)  # places inside a shape, along each of its parameters
 WEIGHT = re.compile(r"weight\((.+)\)")
-PLACED = (PushAt, Element)  # acts of a force that has a place
 Corners = tuple[np.ndarray, np.ndarray]
 
 
@@ -400,13 +399,12 @@ class _Shown(InNumbers):
         is; None of others."""
         if self.system.symbols.unknowns:
             return None
-        force, weighed = self.system.scope.model.forces.get(arrow.of), WEIGHT.fullmatch(arrow.of)
-        declared = self.system.scope.model.forces.values() if weighed else [] if force is None else [force]
-        kinds = (PushOfMass,) if weighed else PLACED
-        acts = [act for each in declared for act in each.acts if isinstance(act, kinds)]
+        weighed = WEIGHT.fullmatch(arrow.of)
+        forces = self.system.scope.model.forces
+        names = [x for x, f in forces.items() if (f.by_mass if weighed else x == arrow.of and f.pushed_points)]
         pushes = [
             (self.placed(place), np.array([float(x) for x in push[: self.d]]))
-            for body, place, push in placed_pushes(self.system, self.state, acts)
+            for body, place, push in placed_pushes(self.system, self.state, names)
             if not weighed or body == weighed[1]
         ]
         if weighed and pushes:

@@ -25,7 +25,7 @@ from eomgen.mechanics.statics import InfluenceLine, SectionForces, SectionPiece,
 from eomgen.proof.at_a_state import balanced_least
 from eomgen.proof.check import Certificate, Check, Tally, attempted, checked, first_wrong
 from eomgen.proof.declared_loads import acting_otherwise
-from eomgen.proof.declared_threads import STRUNG, strung_otherwise, threads_of
+from eomgen.proof.declared_threads import STRUNG, has_threads, strung_otherwise
 from eomgen.proof.drawn_panels import DrawnCurve, DrawnPanel, said_of
 from eomgen.proof.drawn_structure import ReportedPush, space_sections_drawn, structure_drawn
 from eomgen.proof.free_bodies import named_otherwise
@@ -87,7 +87,7 @@ def _structure_checks(
     if meetings_of(system):
         name = "contacts lie on both surfaces, and push by 1 N for each unit of their force"
         yield attempted(name, "50 digits", lambda: apart(system, proof.state))
-    if threads_of(system):
+    if has_threads(system):
         yield attempted(STRUNG, "50 digits", lambda: strung_otherwise(system, proof.state))
     if found.sums and not found.structure.unknowns:
         name = "stated sums have one value, whatever the self-stress"

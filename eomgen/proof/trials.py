@@ -25,7 +25,7 @@ from eomgen.proof.declared_loads import (
     undeclared,
     working_otherwise,
 )
-from eomgen.proof.declared_threads import STRUNG, strung_otherwise, threads_of
+from eomgen.proof.declared_threads import STRUNG, has_threads, strung_otherwise
 from eomgen.proof.degrees_of_freedom import open_at_start, pulled_at_start, rows_that_stay, springs_of_the_start
 from eomgen.proof.free_bodies import (
     Demand,
@@ -375,7 +375,7 @@ class Trials:
 
     def threads(self) -> Iterable[Check]:
         """Check that strings and links run and pull as they are declared; none without them."""
-        if threads_of(self.equations.system):
+        if has_threads(self.equations.system):
             yield self._at_states(STRUNG, "50 digits", lambda state: strung_otherwise(self.equations.system, state))
 
     def kept_constraints(self) -> Iterable[Check]:

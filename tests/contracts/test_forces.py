@@ -22,7 +22,7 @@ from eomgen.mechanics.kinematics.loads import Loads
 from eomgen.mechanics.kinematics.scene import SystemScene
 from eomgen.model.forces import ALL
 from eomgen.model.forces.load import Couple, PointForce, UniformField
-from eomgen.proof.declared_loads import acting_otherwise, working_otherwise
+from eomgen.proof.declared_loads import Declared, acting_otherwise, working_otherwise
 from eomgen.symbolic.expression.derivatives import gradient
 from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.expression.spatial import Vector
@@ -271,9 +271,9 @@ def test_the_potential_and_the_work_of_the_loads_agree(kind, space, fields):
 def test_every_force_says_what_it_does_to_the_proof_too(kind, space, fields):
     """`acts` are not empty, and do the work of its loads: Q . d of the whole system."""
     system = system_with(kind, space, fields)
-    assert system.scope.model.forces["F"].acts
     equations = recursive.assembled_by_recursion(system)
     state = state_of(system)
+    assert [*Declared(system, state).acts_of("F")]
     assert not acting_otherwise(system, state) and not working_otherwise(equations, state)
     if kind != "kinetic":
         others = replace(system.loads, applied=tuple(f for f in system.loads.applied if f.name != "F"))

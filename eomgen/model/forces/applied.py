@@ -1,10 +1,11 @@
 """Applied forces, couples, and forces along coordinates."""
 
+from collections.abc import Iterator
 from typing import ClassVar
 
 from eomgen.frozen import dataclass
 from eomgen.model.forces import load
-from eomgen.model.forces.base import Act, CoupleOn, Force, PushAt, PushOnCoordinate
+from eomgen.model.forces.base import Act, Force, ForceTrial
 from eomgen.model.forces.load import GeneralizedForce, Load, LoadContext
 from eomgen.model.kinds import (
     AxesName,
@@ -38,8 +39,11 @@ class PointForce(Force):
     axes: AxesName = "ground"
 
     @property
-    def acts(self) -> tuple[Act, ...]:
-        return (PushAt(self.point, self.force, self.axes),)
+    def pushed_points(self) -> tuple[str, ...]:
+        return (self.point,)
+
+    def acts(self, here: ForceTrial) -> Iterator[Act]:
+        yield Act(*here.place(self.point), here.directed(self.force, self.axes))
 
     def loads(self, scene: load.LoadContext) -> tuple[load.Load, ...]:
         axes = None if self.axes == "ground" else self.axes
@@ -71,9 +75,9 @@ class CoupleForce(Force):
         """The couple in the plane [N m]; None in space, where it has three components."""
         return scene.vector(self.couple)[0] if len(self.couple) == 1 else None
 
-    @property
-    def acts(self) -> tuple[Act, ...]:
-        return (CoupleOn(self.body, self.couple, self.axes),)
+    def acts(self, here: ForceTrial) -> Iterator[Act]:
+        about = self.couple if len(self.couple) == 3 else (None, None, *self.couple)
+        yield Act(self.body, couple=here.directed(about, self.axes))
 
     def loads(self, scene: load.LoadContext) -> tuple[load.Load, ...]:
         axes = None if self.axes == "ground" else self.axes
@@ -101,9 +105,8 @@ class Generalized(Force):
     coordinate: CoordinateName
     value: WorkingForce
 
-    @property
-    def acts(self) -> tuple[Act, ...]:
-        return (PushOnCoordinate(self.coordinate, self.value),)
+    def acts(self, here: ForceTrial) -> Iterator[Act]:
+        yield Act(moving=(here.scalar(self.coordinate),), force=(here.value(self.value),))
 
     def loads(self, scene: LoadContext) -> tuple[Load, ...]:
         return (GeneralizedForce(self.coordinate, scene.value(self.value)),)

@@ -1,10 +1,11 @@
-"""Base class of forces, and what each declares: where it acts and by which law.
+"""Base class of forces, and the two ways to what each does.
 
-A force is declared by fields that say where it acts and by which law.
+A force is declared by fields that say where it acts and by which law. `loads` gives that over the graph, from which the
+equations are derived; `acts` gives it in numbers at a state, by which they are proven.
 """
 
-from collections.abc import Iterator
-from typing import Any, ClassVar
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, ClassVar, Protocol
 
 from eomgen.frozen import dataclass
 from eomgen.model.catalog import Catalog
@@ -12,17 +13,113 @@ from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.forces.load import Load, LoadContext, SpreadLoad
 from eomgen.model.part import Part
 from eomgen.model.positions import DocumentPath
-from eomgen.symbolic.expression import Expression, Scalar
+from eomgen.symbolic.expression import Expression, Scalar, Vector
+
+# -------- second way ------------------------------------------------------------------------------------------
+# What a force does, in numbers, as its fields declare it: what the proof compares `loads` with. It uses places, twists
+# and masses of a system at a state, and nothing of `loads`.
+
+
+@dataclass(frozen=True)
+class Act:
+    """What a force does, in numbers: it pushes along what moves, and turns a body.
+
+    Its virtual work is sum force_k d(moving_k) + couple . d(turn of the body).
+
+    Args:
+        body: on which it acts; None: the ground, or no body.
+        moving: a place of the body, or one scalar, over the coordinates; () of a couple alone.
+        force: along each of these; of a place, ground axes [N].
+        couple: on the body, ground axes [N m].
+        kinetic: a kinetic energy of what moves and is no body, over the motion; None: none [J].
+    """
+
+    body: str | None = None
+    moving: tuple[Scalar, ...] = ()
+    force: tuple[Any, ...] = ()
+    couple: Vector = Vector.ZERO
+    kinetic: Scalar | None = None
+
+
+class StretchedRope(Protocol):
+    """The straight pieces of a rope at a state, in numbers."""
+
+    @property
+    def stretch(self) -> Any:
+        """What it is longer than without tension [m]."""
+
+    @property
+    def rate(self) -> Any:
+        """Rate of that, by the material that it touches [m/s]."""
+
+    def pulled(self, tension: Any) -> Iterator[Act]:
+        """What a tension does at both ends of every piece [N]."""
+
+
+class ForceTrial(Protocol):
+    """A system at a state, in numbers of 50 digits and ground axes, for the second way to what a force does.
+
+    Places are those of the poses, velocities those of the twists.
+    """
+
+    def value(self, x: Any, also: Mapping[str, Any] | None = None) -> Any:
+        """Number of a declared expression, None: 0; further names in it stand for given numbers."""
+
+    def directed(self, xs: tuple[Any, ...], axes: str = "ground") -> Vector:
+        """A declared vector, which is written in the axes of the ground or of a body."""
+
+    def scalar(self, x: Any) -> Scalar:
+        """A declared expression, or a coordinate by its name, over the coordinates."""
+
+    def place(self, point: str) -> tuple[str | None, Vector]:
+        """(body, place over the coordinates) of a point."""
+
+    def vector(self, moving: Sequence[Scalar]) -> Vector:
+        """Numbers of a place."""
+
+    def at_start(self, moving: Sequence[Scalar]) -> list[Any]:
+        """Numbers where the motion starts."""
+
+    def velocity_of(self, point: str) -> Vector:
+        """Velocity of a point, also against its body [m/s]."""
+
+    def angle(self, body: str) -> Scalar:
+        """Angle of a body in the plane, over the coordinates."""
+
+    def turned(self, body: str | None) -> tuple[Any, Any]:
+        """Angle of the axes of a body about z, with its whole turns, and its rate [rad, rad/s]."""
+
+    def masses(self, bodies: tuple[str, ...] | None) -> Iterator[tuple[str, Any, Vector]]:
+        """(body, mass, its centre over the coordinates) of the named bodies, or of all."""
+
+    def mass_that_enters(self, body: str, rate: Any) -> Any:
+        """Mass that enters a body per second: the declared rate, None: what other flows leave [kg/s]."""
+
+    def rope(self, stops: tuple[Any, ...], slack: Any) -> StretchedRope:
+        """A rope along points and wraps, `slack` its length without tension, or "start"."""
+
+    def direction(self, v: Vector) -> Vector:
+        """v over its length.
+
+        Raises:
+            NoValue: it has none.
+        """
+
+    def function(self, name: str, x: Any) -> Any:
+        """A function of a number: sqrt, tanh ..."""
+
 
 # -------- element ---------------------------------------------------------------------------------------------
-# Actions of forces, as they are declared: fields and names alone, no formulas and no loads.
-#
-# Proofs look at it, and at nothing else of a force.
+# Action between two points, or between two bodies that turn, as it is declared.
 
 
 @dataclass(frozen=True)
 class Element:
     """Action between two points, or a couple that turns two bodies relative to one another.
+
+    With l = |r_2 - r_1| (or n . (r_2 - r_1)) and l' = n . (v_2 - v_1), or the angle between the axes of both and its
+    rate, it pulls with T = k (l - l_0) + c l' + f(l, l'), on the first along n, on the second the opposite; the energy
+    of a spring is V = k (l - l_0)^2 / 2.
 
     Args:
         points: its ends; () for what turns bodies.
@@ -47,120 +144,75 @@ class Element:
     power: Expression | None = None
     dissipation: Expression | None = None
 
+    # -- in numbers ------------------------------------------------------------------------------------------
 
-@dataclass(frozen=True)
-class PushAt:
-    """A force at a point, in the axes of the ground or of the body that `axes` names [N]."""
+    def acts(self, here: ForceTrial) -> Iterator[Act]:
+        """The pull at both ends, or the couples on both bodies, at a state."""
+        pull = self.law(here)[0]
+        for body, sign in zip(self.bodies, (1, -1), strict=False):
+            yield Act(body, couple=Vector((0, 0, sign * pull)))
+        for point, sign in zip(self.points, (1, -1), strict=False):
+            yield Act(*here.place(point), sign * pull * self._direction(here))
 
-    point: str
-    force: tuple[Expression, ...]
-    axes: str = "ground"
+    def law(self, here: ForceTrial) -> tuple[Any, Any]:
+        """(T, V) at a state; V is None where the element is no spring."""
+        k, c = here.value(self.stiffness), here.value(self.damping)
+        length, rate = self._measured(here)
+        pull, energy = c * rate, None
+        if self.pushes:
+            return self._pushed(here, self._slack(here) - length, rate)
+        if self.stiffness is not None:
+            stretch = length - self._slack(here)
+            pull, energy = pull + k * stretch, k * stretch * stretch / 2
+        if self.pull is not None:
+            pull += here.value(self.pull, {"r": length, "r'": rate})
+        return pull, energy
 
+    def _pushed(self, here: ForceTrial, x: Any, rate: Any) -> tuple[Any, Any]:
+        """(T, V) of a bumper that is compressed by x: - (k x^n (1 + a x') + d x') where both are above 0."""
+        k, c, a = map(here.value, (self.stiffness, self.damping, self.dissipation))
+        n = 1 if self.power is None else here.value(self.power)
+        if x <= 0:
+            return 0 * x, 0 * x
+        push = k * x**n
+        return -max(push * max(1 - a * rate, 0) - c * rate, 0 * x), push * x / (n + 1)
 
-@dataclass(frozen=True)
-class CoupleOn:
-    """A couple on a body, in the axes of the ground or of the body that `axes` names; one entry: about z [N m]."""
+    def _measured(self, here: ForceTrial) -> tuple[Any, Any]:
+        """(l, l') or (theta, theta')"""
+        if not self.points:
+            (first, w_1), (second, w_2) = map(here.turned, self.bodies)
+            return second - first, w_2 - w_1
+        A, B = self._ends(here)
+        v_1, v_2 = map(here.velocity_of, self.points)
+        n = self._direction(here)
+        return (B - A) @ n, (v_2 - v_1) @ n
 
-    body: str
-    couple: tuple[Expression, ...]
-    axes: str = "ground"
+    def _ends(self, here: ForceTrial) -> tuple[Vector, Vector]:
+        first, second = (here.vector(here.place(point)[1]) for point in self.points)
+        return first, second
 
+    def _direction(self, here: ForceTrial) -> Vector:
+        """Direction of the pull on the first end, a unit vector; 0 for a spring whose ends coincide."""
+        if self.along is not None:
+            return here.direction(here.directed(self.along))
+        A, B = self._ends(here)
+        if not any(B - A) and self._is_spring_without_length(here):
+            return Vector.ZERO  # it pulls nothing, in no direction
+        return here.direction(B - A)
 
-@dataclass(frozen=True)
-class PushAlongLine:
-    """A force per length on a body from one of its points to another, linear between, ground axes [N/m]."""
+    def _is_spring_without_length(self, here: ForceTrial) -> bool:
+        """True if the pull is k l alone, which is smooth where the ends meet."""
+        springs = self.stiffness is not None and self.damping is None and self.pull is None
+        return springs and bool(self._slack(here) == 0)
 
-    body: str
-    ends: tuple[str, ...]
-    intensities: tuple[tuple[Expression, ...], ...]
-
-
-@dataclass(frozen=True)
-class PushOfMass:
-    """An acceleration of the ground's axes that every mass of the bodies feels; None: of all bodies [m/s^2]."""
-
-    acceleration: tuple[Expression, ...]
-    bodies: tuple[str, ...] | None = None
-
-
-@dataclass(frozen=True)
-class PushOnCoordinate:
-    """A generalized force on a coordinate, without a point of application [N or N m]."""
-
-    coordinate: str
-    value: Expression
-
-
-@dataclass(frozen=True)
-class GivenEnergy:
-    """A potential energy, or a kinetic one, without a point of application [J]."""
-
-    potential: Expression | None = None
-    kinetic: Expression | None = None
-
-
-@dataclass(frozen=True)
-class FlowOfMass:
-    """Mass that enters a body at a point per second, with a velocity relative to the body, or against the ground.
-
-    Args:
-        rate: None: what the other flows leave of the rate of the body's mass [kg/s].
-    """
-
-    point: str
-    velocity: tuple[Expression, ...]
-    axes: str = "ground"
-    rate: Expression | None = None
-    absolute: bool = False
-
-
-@dataclass(frozen=True)
-class ElasticThread:
-    """One tension along the way of a rope, k s + c s' of its stretch s where that is above 0, and never below 0.
-
-    Args:
-        stops: points by name, and wraps as a rope has them.
-        slack: its length without tension [m], or "start".
-    """
-
-    stops: tuple[Any, ...]
-    stiffness: Expression
-    slack: Expression | str
-    damping: Expression | None = None
-
-
-@dataclass(frozen=True)
-class Meshing:
-    """Couples of two wheels by x = theta_1 - ratio theta_2 beyond their play, of which the driven one has a share.
-
-    Args:
-        stiffness, damping: of x and its rate, at the first wheel.
-        play: the whole of it in x; None: 0.
-        efficiency: the share of the driven one; None: 1.
-        smooth: the speed of the first over which the driven side changes; None: at once.
-    """
-
-    bodies: tuple[str, ...]
-    ratio: Expression
-    stiffness: Expression
-    damping: Expression | None = None
-    play: Expression | None = None
-    efficiency: Expression | None = None
-    smooth: Expression | None = None
-
-
-Act = (
-    FlowOfMass
-    | Meshing
-    | ElasticThread
-    | Element
-    | PushAt
-    | CoupleOn
-    | PushAlongLine
-    | PushOfMass
-    | PushOnCoordinate
-    | GivenEnergy
-)
+    def _slack(self, here: ForceTrial) -> Any:
+        if not isinstance(self.slack, str):
+            return here.value(self.slack)
+        first, second = (here.place(point)[1] for point in self.points)
+        apart = Vector(here.at_start(second - first))
+        if self.along is not None:
+            return apart @ self._direction(here)
+        return apart @ here.direction(apart) if any(apart) else 0
 
 
 # -------- base ------------------------------------------------------------------------------------------------
@@ -202,9 +254,22 @@ class Force(Part):
         return self.element is not None and self.element.slack == "start"
 
     @property
-    def acts(self) -> tuple[Act, ...]:
-        """The declared actions of the force, which the proof uses instead of `loads`."""
-        return () if self.element is None else (self.element,)
+    def uniform(self) -> tuple[Expression, ...] | None:
+        """An acceleration that every mass of the model feels, ground axes [m/s^2]; None of others."""
+        return None
+
+    @property
+    def pushed_points(self) -> tuple[str, ...]:
+        """Points at which it pushes, by name; () of what pushes elsewhere."""
+        return () if self.element is None else self.element.points
+
+    def acts(self, here: ForceTrial) -> Iterator[Act]:
+        """What it does at a state, in numbers, as its fields declare it: the proof uses it instead of `loads`."""
+        yield from () if self.element is None else self.element.acts(here)
+
+    def pulled(self, here: ForceTrial) -> Any:
+        """The second way to its `effort`, in numbers; None of what has none."""
+        return None if self.element is None else self.element.law(here)[0]
 
     @property
     def kinetic(self) -> Expression | None:

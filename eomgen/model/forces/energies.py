@@ -1,9 +1,10 @@
 """Energies that are declared as functions of the coordinates and speeds."""
 
+from collections.abc import Iterator
 from typing import ClassVar
 
 from eomgen.frozen import dataclass
-from eomgen.model.forces.base import Act, Force, GivenEnergy
+from eomgen.model.forces.base import Act, Force, ForceTrial
 from eomgen.model.forces.load import LoadContext
 from eomgen.model.kinds import Energy, MotionEnergy
 from eomgen.symbolic.expression import Expression, Scalar
@@ -24,9 +25,8 @@ class Potential(Force):
     placeless: ClassVar[bool] = True
     energy: Energy
 
-    @property
-    def acts(self) -> tuple[Act, ...]:
-        return (GivenEnergy(potential=self.energy),)
+    def acts(self, here: ForceTrial) -> Iterator[Act]:
+        yield Act(moving=(here.scalar(self.energy),), force=(-1,))
 
     def potential(self, scene: LoadContext) -> Scalar | None:
         return scene.value(self.energy)
@@ -51,9 +51,8 @@ class Kinetic(Force):
     placeless: ClassVar[bool] = True
     energy: MotionEnergy
 
-    @property
-    def acts(self) -> tuple[Act, ...]:
-        return (GivenEnergy(kinetic=self.energy),)
+    def acts(self, here: ForceTrial) -> Iterator[Act]:
+        yield Act(kinetic=here.scalar(self.energy))
 
     @property
     def kinetic(self) -> Expression:

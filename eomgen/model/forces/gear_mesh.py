@@ -1,14 +1,14 @@
 """Gear wheels whose teeth yield, have play, and lose power."""
 
 from collections.abc import Iterator
-from typing import Annotated, ClassVar
+from typing import Annotated, Any, ClassVar
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.model.catalog import Catalog
 from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.fields import FormulaRule
-from eomgen.model.forces.base import Act, Force, Meshing
+from eomgen.model.forces.base import Act, Force, ForceTrial
 from eomgen.model.forces.load import Couple, Load, LoadContext
 from eomgen.model.kinds import AngularDamping, AngularStiffness, Pure, TurningSpeed, TwoBodies
 from eomgen.model.positions import DocumentPath
@@ -61,11 +61,30 @@ class GearMesh(Force):
         """True: its teeth stand in the middle of their play where the motion starts."""
         return True
 
-    @property
-    def acts(self) -> tuple[Act, ...]:
-        return (
-            Meshing(self.bodies, self.ratio, self.stiffness, self.damping, self.backlash, self.efficiency, self.smooth),
-        )
+    def acts(self, here: ForceTrial) -> Iterator[Act]:
+        """The teeth push where x is beyond the play; the driven wheel gets its share."""
+        (first, second), ratio = self.bodies, here.value(self.ratio)
+        (_, w_1), M = here.turned(first), self._pushed(here)
+        if self.smooth is None:
+            drives = (M * w_1 > 0) - (M * w_1 < 0)
+        else:
+            drives = here.function("tanh", w_1 / here.value(self.smooth)) * ((M > 0) - (M < 0))
+        lost = 0 if self.efficiency is None else (1 - here.value(self.efficiency)) / 2
+        yield Act(first, couple=Vector((0, 0, -M * (1 - lost * (1 - drives)))))
+        yield Act(second, couple=Vector((0, 0, ratio * M * (1 - lost * (1 + drives)))))
+
+    def _pushed(self, here: ForceTrial) -> Any:
+        """M at a state, in numbers."""
+        first, second = self.bodies
+        ratio, k, c, play = map(here.value, (self.ratio, self.stiffness, self.damping, self.backlash))
+        (begun,) = here.at_start((here.angle(first) - here.scalar(self.ratio) * here.angle(second),))
+        (theta_1, w_1), (theta_2, w_2) = map(here.turned, self.bodies)
+        x, rate = theta_1 - ratio * theta_2 - begun, w_1 - ratio * w_2
+        if self.backlash is None:
+            return k * x + c * rate
+        side = 1 if x > 0 else -1
+        beyond = side * x - play / 2
+        return side * max(k * beyond + side * c * rate, 0) if beyond > 0 else 0 * x
 
     def loads(self, scene: LoadContext) -> tuple[Load, ...]:
         """- M on the first, ratio M on the second, the driven one by its share.

@@ -8,7 +8,7 @@ from eomgen.frozen import dataclass
 from eomgen.model.catalog import Catalog, owner_of
 from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.forces import load
-from eomgen.model.forces.base import Act, FlowOfMass, Force
+from eomgen.model.forces.base import Act, Force, ForceTrial
 from eomgen.model.kinds import AxesName, FlowRate, FlowVelocity, PointName
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression import Expression, Scalar, is_zero
@@ -58,10 +58,16 @@ class MassFlow(Force):
                 yield Diagnostic((*path, "rate"), what, "give the `rate` of all of them but one", key=True)
 
     @property
-    def acts(self) -> tuple[Act, ...]:
-        flow = self.velocity if self.absolute is None else self.absolute
-        assert flow is not None, "one of both is given"
-        return (FlowOfMass(self.point, flow, self.axes, self.rate, absolute=self.absolute is not None),)
+    def pushed_points(self) -> tuple[str, ...]:
+        return (self.point,)
+
+    def acts(self, here: ForceTrial) -> Iterator[Act]:
+        """m' w, w less the velocity of the point where it is given against the ground."""
+        given = self.velocity if self.absolute is None else self.absolute
+        assert given is not None, "one of both is given"
+        w = here.directed(given, self.axes)
+        w = w if self.absolute is None else w - here.velocity_of(self.point)
+        yield Act(*here.place(self.point), here.mass_that_enters(self.body, self.rate) * w)
 
     def loads(self, scene: load.LoadContext) -> tuple[load.Load, ...]:
         """m' w at the point; m' (v - v_P) where v is the velocity against the ground.

@@ -7,7 +7,7 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.model.catalog import Catalog, diagnostics_of_one, is_round, owner_of
 from eomgen.model.diagnostics import Diagnostic
-from eomgen.model.forces.base import Act, ElasticThread, Force
+from eomgen.model.forces.base import Act, Force, ForceTrial, StretchedRope
 from eomgen.model.forces.load import Couple, Load, LoadContext, PointForce
 from eomgen.model.kinds import LinearDamping, LinearStiffness, NaturalLength, Route
 from eomgen.model.positions import DocumentPath
@@ -60,9 +60,17 @@ class Rope(Force):
     def of_the_start(self) -> bool:
         return self.length == "start"
 
-    @property
-    def acts(self) -> tuple[Act, ...]:
-        return (ElasticThread(self.path, self.stiffness, self.length, self.damping),)
+    def acts(self, here: ForceTrial) -> Iterator[Act]:
+        rope = here.rope(self.path, self.length)
+        yield from rope.pulled(self._tension(here, rope))
+
+    def pulled(self, here: ForceTrial) -> Any:
+        return self._tension(here, here.rope(self.path, self.length))
+
+    def _tension(self, here: ForceTrial, rope: StretchedRope) -> Any:
+        """k s + c s' where both s and that are above 0, else 0."""
+        s, k, c = rope.stretch, here.value(self.stiffness), here.value(self.damping)
+        return 0 * s if s <= 0 else max(k * s + c * (rope.rate if c else 0), 0 * s)
 
     def strands_at(self, scene: LoadContext) -> tuple[Any, ...]:
         return scene.strands(self.path)

@@ -1,13 +1,14 @@
 """Weights and line loads."""
 
+from collections.abc import Iterator
 from typing import ClassVar
 
 from eomgen.errors import ModelError
 from eomgen.frozen import dataclass
-from eomgen.model.forces.base import Act, Force, PushAlongLine, PushOfMass
+from eomgen.model.forces.base import Act, Force, ForceTrial
 from eomgen.model.forces.load import Load, LoadContext, PointForce, SpreadLoad, UniformField
 from eomgen.model.kinds import Acceleration, Bodies, BodyName, Flag, LineLoad, TwoLineLoads, TwoOwnPoints
-from eomgen.symbolic.expression import Fraction, Scalar, Vector, is_zero, sqrt
+from eomgen.symbolic.expression import Expression, Fraction, Scalar, Vector, is_zero, sqrt
 
 # -------- gravity ---------------------------------------------------------------------------------------------
 # Gravity: a weight on every body, or on some.
@@ -30,8 +31,13 @@ class Gravity(Force):
     axis_down: Flag = False
 
     @property
-    def acts(self) -> tuple[Act, ...]:
-        return (PushOfMass(self.acceleration, self.bodies),)
+    def uniform(self) -> tuple[Expression, ...] | None:
+        return self.acceleration if self.bodies is None else None
+
+    def acts(self, here: ForceTrial) -> Iterator[Act]:
+        g = here.directed(self.acceleration)
+        for body, m, center in here.masses(self.bodies):
+            yield Act(body, center, m * g)
 
     def loads(self, scene: LoadContext) -> tuple[Load, ...]:
         """A uniform field, or m g at the mass centre of each named body."""
@@ -71,10 +77,15 @@ class Distributed(Force):
     intensity: LineLoad | None = None
     intensities: TwoLineLoads | None = None
 
-    @property
-    def acts(self) -> tuple[Act, ...]:
-        q = self.intensities if self.intensity is None else (self.intensity, self.intensity)
-        return () if q is None else (PushAlongLine(self.body, tuple(self.between), q),)
+    def acts(self, here: ForceTrial) -> Iterator[Act]:
+        """Forces that replace it by Simpson's rule, at both ends and in the middle."""
+        (_, A), (_, B) = (here.place(_own(self.body, name)) for name in self.between)
+        q_A, q_B = (here.directed(q) for q in self.intensities or (self.intensity, self.intensity) if q is not None)
+        way = here.vector(B) - here.vector(A)
+        sixth = here.function("sqrt", way @ way) / 6
+        yield Act(self.body, A, sixth * q_A)
+        yield Act(self.body, Fraction(1, 2) * (A + B), sixth * 2 * (q_A + q_B))
+        yield Act(self.body, B, sixth * q_B)
 
     def loads(self, scene: LoadContext) -> tuple[Load, ...]:
         """Forces (2 q_A + q_B) L / 6 at A and (q_A + 2 q_B) L / 6 at B: the same resultant and moment as the load."""
