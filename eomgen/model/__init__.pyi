@@ -64,7 +64,7 @@ from eomgen.model.fields import Table as Table
 # left = right, as it was written
 from eomgen.model.fields import WrittenEquation as WrittenEquation
 
-# What a force does, in numbers: it pushes along what moves, and turns a body
+# Action of a force in numbers: it pushes along what moves, and turns a body
 from eomgen.model.forces.base import Act as Act
 
 # Action between two points, or a couple that turns two bodies relative to one another

@@ -79,7 +79,7 @@ def declared_pushes(system: System, state: State, force: str) -> Pushes:
 
 
 def placed_pushes(system: System, state: State, forces: Iterable[str]) -> Iterator[Placed]:
-    """What forces push at places.
+    """Forces that push at places, of some forces by name.
 
     Raises:
         NoValue: something has no value there.

@@ -242,7 +242,7 @@ class RopeInNumbers(InNumbers):
     slack: Any
 
     def pulled(self, tension: Any) -> Iterator[Act]:
-        """What a tension does at both ends of every strand: on the stop, by its moment where the rope touches it."""
+        """Forces of a tension at both ends of every strand, on the stops, by their moments where the rope touches."""
         for first, second, d in self._strung.strands:
             for stop, pull in ((first, tension * d), (second, -tension * d)):
                 arm = stop.touched(d) - stop.center

@@ -22,7 +22,7 @@ from eomgen.symbolic.expression import Expression, Scalar, Vector
 
 @dataclass(frozen=True)
 class Act:
-    """What a force does, in numbers: it pushes along what moves, and turns a body.
+    """Action of a force in numbers: it pushes along what moves, and turns a body.
 
     Its virtual work is sum force_k d(moving_k) + couple . d(turn of the body).
 
@@ -46,14 +46,14 @@ class StretchedRope(Protocol):
 
     @property
     def stretch(self) -> Any:
-        """What it is longer than without tension [m]."""
+        """Length by which it is longer than without tension [m]."""
 
     @property
     def rate(self) -> Any:
         """Rate of that, by the material that it touches [m/s]."""
 
     def pulled(self, tension: Any) -> Iterator[Act]:
-        """What a tension does at both ends of every piece [N]."""
+        """Forces of a tension at both ends of every piece [N]."""
 
 
 class ForceTrial(Protocol):
@@ -264,7 +264,7 @@ class Force(Part):
         return () if self.element is None else self.element.points
 
     def acts(self, here: ForceTrial) -> Iterator[Act]:
-        """What it does at a state, in numbers, as its fields declare it: the proof uses it instead of `loads`."""
+        """Its actions at a state in numbers, as its fields declare them: the proof uses them instead of `loads`."""
         yield from () if self.element is None else self.element.acts(here)
 
     def pulled(self, here: ForceTrial) -> Any:
