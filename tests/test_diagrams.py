@@ -16,7 +16,7 @@ from eomgen.mechanics.free_bodies.reactions import Reactions
 from eomgen.mechanics.free_bodies.structure import Structure
 from eomgen.mechanics.statics.forces_in_sections import SectionForces
 from eomgen.mechanics.statics.influence import InfluenceLine
-from eomgen.proof.drawn_structure import structure_drawn
+from eomgen.proof.drawn import structure_drawn
 from eomgen.results.at_rest.pictures import diagram_panels, influence_panel, pushes_on
 
 BEAM = """

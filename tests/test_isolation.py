@@ -12,8 +12,7 @@ from eomgen.symbolic.expression.formula import NAMES
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.numeric.arithmetic import INTERVALS
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate, fifty_digits
-from eomgen.symbolic.numeric.isolation import can_isolate, isolated
-from eomgen.symbolic.numeric.roots import Descent
+from eomgen.symbolic.numeric.roots import Descent, can_isolate, isolated
 
 graph = Graph()
 x, y = graph.symbol("x"), graph.symbol("y")

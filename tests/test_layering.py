@@ -458,7 +458,7 @@ READERS = {  # classes beside `Study` that cache more than two things derived of
     "proof.instant._Proof": (4, "the motion found by another way, and its sizes"),
     "proof.motion.Leg": (3, "energies along one phase, and a store of columns"),
     "proof.printed.ReadBack": (6, "formulas read back from their print"),
-    "proof.reported_sections._Works": (3, "virtual works at every station"),
+    "proof.reported_cuts._Works": (3, "virtual works at every station"),
     "proof.structure._Proof": (6, "loads and balance of a structure in numbers"),
     "questions.outputs_answered._Solver": (
         4,

@@ -20,10 +20,9 @@ from eomgen.model.shapes.solids import Cone
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.text import parse
-from eomgen.symbolic.numeric.arithmetic import INTERVALS
+from eomgen.symbolic.numeric.arithmetic import INTERVALS, number_of
 from eomgen.symbolic.numeric.dense import independent, lengths_of
 from eomgen.symbolic.numeric.evaluation import ARRAYS, FLOAT, evaluate
-from eomgen.symbolic.numeric.sure_numbers import number_of
 
 MODELS = Path(__file__).parent.parent / "models"
 SPRING = """

@@ -8,7 +8,7 @@ from random import Random
 import pytest
 import sympy
 
-from eomgen.symbolic.exact.rational_polynomial import RationalPolynomial
+from eomgen.symbolic.exact.polynomials import RationalPolynomial
 from eomgen.symbolic.exact.terms import TooLarge
 from eomgen.symbolic.expression.rational import Fraction
 

@@ -10,8 +10,8 @@ import pytest
 from eomgen.symbolic.exact.book_forms import book_form
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.exact.normal_forms import equal, readable
+from eomgen.symbolic.exact.polynomials import of_one_degree, with_square_replaced
 from eomgen.symbolic.exact.sums import with_squares
-from eomgen.symbolic.exact.unit_quaternions import of_one_degree, with_square_replaced
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.print.text import to_text
 

@@ -13,10 +13,9 @@ from slow_run import in_slow_run
 import eomgen
 from eomgen.symbolic.expression.formula import cos, sqrt
 from eomgen.symbolic.expression.graph import Graph
-from eomgen.symbolic.numeric.arithmetic import balls
+from eomgen.symbolic.numeric.arithmetic import balls, number_of, numbers_of
 from eomgen.symbolic.numeric.digits import ball_of, precision
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.numeric.sure_numbers import number_of, numbers_of
 
 GRAPH = Graph()
 X, Y = GRAPH.symbol("x"), GRAPH.symbol("y")

@@ -29,7 +29,7 @@ import eomgen
 from eomgen import resources
 from eomgen.cli import main
 from eomgen.errors import UsageError
-from eomgen.proof.drawn_values import drawn_otherwise, reported_of_all
+from eomgen.proof.drawn import drawn_otherwise, reported_of_all
 from eomgen.resources import check_patience
 from eomgen.simulation import WholeRun
 from eomgen.sweeps import workers

@@ -202,7 +202,7 @@ pull = { kind = "force", point = "beam.B", force = ["F", 0] }
 
 
 def wrong_sections(change: Callable[[Any, Any], None]) -> str:
-    from eomgen.proof.reported_sections import sections_reported
+    from eomgen.proof.reported_cuts import sections_reported
     from eomgen.results.at_rest.section_steps import reported_sections, section_payload, section_steps
 
     sections = eomgen.statics(eomgen.loads(BEAM)).sections
@@ -273,7 +273,7 @@ def test_a_kind_of_motion_is_that_of_the_spin_and_the_velocities(said: str, monk
 
 def reported_works(change=lambda reported: reported) -> str:
     """What is wrong with the virtual works of the beam, each changed."""
-    from eomgen.proof.reported_sections import works_reported
+    from eomgen.proof.reported_cuts import works_reported
     from eomgen.proof.structure import state_of
 
     beam = eomgen.statics(eomgen.loads(BEAM))

@@ -54,19 +54,19 @@ from eomgen.proof.degrees_of_freedom import lines_otherwise as lines_otherwise
 from eomgen.proof.degrees_of_freedom import rows_that_stay as rows_that_stay
 
 # Content of one panel of a diagram
-from eomgen.proof.drawn_panels import DrawnPanel as DrawnPanel
-
-# Its panels, bars of colours left out
-from eomgen.proof.drawn_panels import panels_of as panels_of
+from eomgen.proof.drawn import DrawnPanel as DrawnPanel
 
 # A force, a couple or a line load as it is drawn
-from eomgen.proof.drawn_structure import ReportedPush as ReportedPush
+from eomgen.proof.drawn import ReportedPush as ReportedPush
 
 # Check that the values set in each run are of their ranges and laws
-from eomgen.proof.drawn_values import drawn_otherwise as drawn_otherwise
+from eomgen.proof.drawn import drawn_otherwise as drawn_otherwise
+
+# Its panels, bars of colours left out
+from eomgen.proof.drawn import panels_of as panels_of
 
 # Check of count, least, mean and largest value of each column, and of the columns reported the same in all runs
-from eomgen.proof.drawn_values import reported_of_all as reported_of_all
+from eomgen.proof.drawn import reported_of_all as reported_of_all
 
 # Reference values by which a function of generated code is checked
 from eomgen.proof.emitted_code import Judged as Judged
@@ -116,8 +116,20 @@ from eomgen.proof.posed_model import branches_otherwise as branches_otherwise
 # Formulas as they are printed
 from eomgen.proof.printed import Printed as Printed
 
+# A block that moves
+from eomgen.proof.reported_cuts import ReportedBlock as ReportedBlock
+
 # A force, or a couple, as it leaves, ground axes
 from eomgen.proof.reported_cuts import ReportedForce as ReportedForce
+
+# A row of the table of blocks, by its heads; the row of a load, where it has a place
+from eomgen.proof.reported_cuts import ReportedMotion as ReportedMotion
+
+# Reported section forces of one body
+from eomgen.proof.reported_cuts import ReportedSections as ReportedSections
+
+# Reported derivation of one reaction by virtual work
+from eomgen.proof.reported_cuts import ReportedWork as ReportedWork
 
 # Checks of the forces on all bodies at a state
 from eomgen.proof.reported_cuts import cuts_reported as cuts_reported
@@ -142,18 +154,6 @@ from eomgen.proof.reported_run import ReportedRun as ReportedRun
 
 # Checks of all reported texts of a run against its states
 from eomgen.proof.reported_run import run_reported as run_reported
-
-# A block that moves
-from eomgen.proof.reported_sections import ReportedBlock as ReportedBlock
-
-# A row of the table of blocks, by its heads; the row of a load, where it has a place
-from eomgen.proof.reported_sections import ReportedMotion as ReportedMotion
-
-# Reported section forces of one body
-from eomgen.proof.reported_sections import ReportedSections as ReportedSections
-
-# Reported derivation of one reaction by virtual work
-from eomgen.proof.reported_sections import ReportedWork as ReportedWork
 
 # Printed texts of small motions
 from eomgen.proof.reported_small_motions import PrintedModes as PrintedModes

@@ -21,9 +21,8 @@ from eomgen.mechanics.free_bodies import Balance, Indeterminate, Reactions
 from eomgen.mechanics.instant import Quantities
 from eomgen.model import FUNCTIONS, OutputSource
 from eomgen.proof.check import differing
-from eomgen.proof.in_numbers import pushes_of, with_inputs
 from eomgen.proof.printed import least_multipliers
-from eomgen.proof.states import TrialState
+from eomgen.proof.states import TrialState, pushes_of, with_inputs
 from eomgen.proof.trials import Trials, refuse_noise
 from eomgen.simulation import ReactionColumns
 from eomgen.symbolic.expression import (

@@ -33,9 +33,8 @@ from eomgen.mechanics.kinematics import ContactMode, SystemInertia
 from eomgen.mechanics.start import Start
 from eomgen.model import Contact, Resistance
 from eomgen.proof.check import Check, Tally
-from eomgen.proof.in_numbers import InNumbers
 from eomgen.proof.posed_model import misplaced
-from eomgen.proof.states import own_start
+from eomgen.proof.states import InNumbers, own_start
 from eomgen.simulation import Phase, PhaseModel, ReactionColumns, sliding_velocity
 from eomgen.symbolic.expression import Scalar, State, is_zero
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances

@@ -17,7 +17,7 @@ from eomgen.mechanics.kinematics import (
 )
 from eomgen.model import Act
 from eomgen.proof.declared_threads import RopeInNumbers
-from eomgen.proof.in_numbers import (
+from eomgen.proof.states import (
     STEP,
     InNumbers,
     Pushes,

@@ -12,8 +12,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import SystemScene
 from eomgen.model import Act
-from eomgen.proof.in_numbers import InNumbers, Pushes, add_push, direction_at, pushed_otherwise, pushes_of
-from eomgen.proof.states import refuse_open
+from eomgen.proof.states import InNumbers, Pushes, add_push, direction_at, pushed_otherwise, pushes_of, refuse_open
 from eomgen.symbolic.expression import Fraction, State, Vector
 from eomgen.symbolic.numeric import NoValue, fifty_digits, tolerances
 

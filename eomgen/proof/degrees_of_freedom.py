@@ -31,7 +31,7 @@ from eomgen.mechanics.kinematics import Applied, ContactModes, Motion, Scope
 from eomgen.mechanics.start import Start
 from eomgen.model import Model
 from eomgen.proof.check import first_wrong
-from eomgen.proof.in_numbers import STEP, declared_state_rates
+from eomgen.proof.states import STEP, declared_state_rates
 from eomgen.symbolic.expression import Node, Scalar, State, Vector, jacobian, symbols_of
 from eomgen.symbolic.numeric import (
     NoValue,

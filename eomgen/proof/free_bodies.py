@@ -35,7 +35,7 @@ from eomgen.mechanics.free_bodies import (
     SystemFriction,
 )
 from eomgen.mechanics.kinematics import BodyLink, SystemInertia
-from eomgen.proof.in_numbers import STEP, InNumbers, Way, way_through
+from eomgen.proof.states import STEP, InNumbers, Way, way_through
 from eomgen.symbolic.expression import Matrix, Node, Scalar, State, Vector, Wrench, gradient, pullback, symbols_of
 from eomgen.symbolic.numeric import NoValue, balanced, evaluate, fifty_digits, rank, tolerances
 

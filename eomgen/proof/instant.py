@@ -31,8 +31,7 @@ from eomgen.proof.declared_loads import acting
 from eomgen.proof.degrees_of_freedom import Nearby
 from eomgen.proof.free_bodies import drive_demanded, multipliers_demanded
 from eomgen.proof.impacts import struck
-from eomgen.proof.in_numbers import SECOND_STEP, Pushes, Way, add_push, pushes_of, way_through, with_inputs
-from eomgen.proof.states import closed_state
+from eomgen.proof.states import SECOND_STEP, Pushes, Way, add_push, closed_state, pushes_of, way_through, with_inputs
 from eomgen.symbolic.expression import Call, Matrix, Node, Scalar, Vector, is_zero, parse_equation, symbols_of
 from eomgen.symbolic.numeric import NoValue, eigenpairs_in_digits, evaluate, fifty_digits, rank, tolerances
 

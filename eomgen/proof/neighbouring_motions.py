@@ -15,7 +15,7 @@ import numpy as np
 from eomgen.frozen import dataclass
 from eomgen.mechanics.linearization import NAME, SmallMotions
 from eomgen.proof.degrees_of_freedom import Going, Nearby, Numbers50
-from eomgen.proof.in_numbers import STEP
+from eomgen.proof.states import STEP
 from eomgen.symbolic.expression import Node, Vector
 from eomgen.symbolic.numeric import fifty_digits
 

@@ -35,8 +35,7 @@ from eomgen.model import (
     Move,
     Push,
 )
-from eomgen.proof.in_numbers import InNumbers, direction_at
-from eomgen.proof.states import refuse_open
+from eomgen.proof.states import InNumbers, direction_at, refuse_open
 from eomgen.symbolic.expression import Matrix, Node, Scalar, State, Vector
 from eomgen.symbolic.numeric import evaluate, fifty_digits, tolerances
 

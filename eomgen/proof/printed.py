@@ -20,8 +20,7 @@ from eomgen.mechanics.dynamics import EquationsOfMotion, exact_accelerations
 from eomgen.mechanics.instant import Quantities
 from eomgen.mechanics.kinematics import SystemInertia
 from eomgen.model import FUNCTIONS, OutputSource
-from eomgen.proof.in_numbers import way_through
-from eomgen.proof.states import refuse_open
+from eomgen.proof.states import refuse_open, way_through
 from eomgen.symbolic.expression import LONGEST, Call, Fraction, Node, Scalar, State, Vector, gradient, inner, parse
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, of_one_length, tolerances
 

@@ -25,8 +25,8 @@ from eomgen.model import Couple, Meeting, PointForce, Shape
 from eomgen.proof.at_a_state import NumericState
 from eomgen.proof.check import Check, Tally
 from eomgen.proof.declared_loads import placed_pushes
-from eomgen.proof.in_numbers import InNumbers
 from eomgen.proof.reported_run import state_of_row
+from eomgen.proof.states import InNumbers
 from eomgen.simulation import Trajectory
 from eomgen.symbolic.expression import is_zero
 from eomgen.symbolic.numeric import NoValue, tolerances

@@ -19,7 +19,7 @@ from eomgen.errors import ExpressionError
 from eomgen.frozen import dataclass
 from eomgen.model import Model, Unit
 from eomgen.proof.check import Check, Tally, attempted, checked, differing, first_wrong
-from eomgen.proof.drawn_panels import ColouredPoints, DrawnPanel, said_of
+from eomgen.proof.drawn import ColouredPoints, DrawnPanel, said_of
 from eomgen.symbolic.expression import LONGEST, Expression, parse
 from eomgen.symbolic.numeric import NoValue, tolerances
 

@@ -23,7 +23,7 @@ from eomgen.proof.certificate import certify
 from eomgen.proof.check import Certificate, Check, attempted, checked, first_wrong, unchecked
 from eomgen.proof.degrees_of_freedom import Nearby
 from eomgen.proof.free_bodies import demand_of
-from eomgen.proof.in_numbers import STEP, declared_state_rates, with_inputs
+from eomgen.proof.states import STEP, declared_state_rates, with_inputs
 from eomgen.symbolic.expression import Node, jacobian
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 

@@ -26,12 +26,11 @@ from eomgen.proof.at_a_state import balanced_least
 from eomgen.proof.check import Certificate, Check, Tally, attempted, checked, first_wrong
 from eomgen.proof.declared_loads import acting_otherwise
 from eomgen.proof.declared_threads import STRUNG, has_threads, strung_otherwise
-from eomgen.proof.drawn_panels import DrawnCurve, DrawnPanel, said_of
-from eomgen.proof.drawn_structure import ReportedPush, space_sections_drawn, structure_drawn
+from eomgen.proof.drawn import DrawnCurve, DrawnPanel, ReportedPush, said_of, space_sections_drawn, structure_drawn
 from eomgen.proof.free_bodies import named_otherwise
 from eomgen.proof.masses import other_data
 from eomgen.proof.posed_model import apart, meetings_of
-from eomgen.proof.reported_sections import ReportedSections, ReportedWork, sections_reported, works_reported
+from eomgen.proof.reported_cuts import ReportedSections, ReportedWork, sections_reported, works_reported
 from eomgen.symbolic.expression import Node, Scalar, Vector, parse, symbols_of
 from eomgen.symbolic.numeric import evaluate, fifty_digits, tolerances
 

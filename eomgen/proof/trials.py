@@ -35,11 +35,22 @@ from eomgen.proof.free_bodies import (
     moved_otherwise,
     named_otherwise,
 )
-from eomgen.proof.in_numbers import FINER_STEP, STEP, declared_state_rates, way_through
 from eomgen.proof.motion import other_energies
 from eomgen.proof.posed_model import apart, meetings_of, misplaced
 from eomgen.proof.printed import Printed, ReadBack, least_multipliers
-from eomgen.proof.states import States, TrialState, consistent_states, in_doubles, is_open, own_start, refuse_open
+from eomgen.proof.states import (
+    FINER_STEP,
+    STEP,
+    States,
+    TrialState,
+    consistent_states,
+    declared_state_rates,
+    in_doubles,
+    is_open,
+    own_start,
+    refuse_open,
+    way_through,
+)
 from eomgen.symbolic.exact import rounding_decides
 from eomgen.symbolic.expression import Matrix, Scalar, State, Vector, inner, is_zero
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, floats_of, tolerances

@@ -32,9 +32,8 @@ from eomgen.proof.at_a_state import NumericState, state_in_numbers
 from eomgen.proof.certificate import certify
 from eomgen.proof.check import Certificate, Check, Tally
 from eomgen.proof.impacts import sides_differ
-from eomgen.proof.in_numbers import STEP
 from eomgen.proof.instant import NearbyStates
-from eomgen.proof.states import closed_near, refuse_open
+from eomgen.proof.states import STEP, closed_near, refuse_open
 from eomgen.proof.trials import Trials
 from eomgen.symbolic.expression import SLOPE, Call, Expression, Fraction, Node, Scalar, parse
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances

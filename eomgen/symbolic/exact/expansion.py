@@ -10,7 +10,7 @@ from collections.abc import Collection, Iterable
 
 from eomgen.errors import DerivationError
 from eomgen.resources import check_patience
-from eomgen.symbolic.exact.polynomials import square_root
+from eomgen.symbolic.exact.polynomials import reduced_on, square_root
 from eomgen.symbolic.exact.terms import (
     HALF,
     ONE,
@@ -32,7 +32,6 @@ from eomgen.symbolic.exact.terms import (
     terms_times,
     wave,
 )
-from eomgen.symbolic.exact.unit_quaternions import reduced_on
 from eomgen.symbolic.expression import Fraction, Node, Number, Owner, Scalar, order, tidy, united
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 

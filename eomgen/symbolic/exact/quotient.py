@@ -11,8 +11,7 @@ from math import gcd
 
 from eomgen.frozen import dataclass
 from eomgen.symbolic.exact.expansion import Expansion
-from eomgen.symbolic.exact.polynomials import Polynomials
-from eomgen.symbolic.exact.rational_polynomial import RationalPolynomial
+from eomgen.symbolic.exact.polynomials import Polynomials, RationalPolynomial
 from eomgen.symbolic.exact.terms import (
     HALF,
     Key,

@@ -9,8 +9,8 @@ from typing import Any, TypeVar
 
 from eomgen.frozen import dataclass
 from eomgen.symbolic.exact.expansion import Expansion, expanded
+from eomgen.symbolic.exact.polynomials import RationalPolynomial
 from eomgen.symbolic.exact.quotient import powers_in, reduced
-from eomgen.symbolic.exact.rational_polynomial import RationalPolynomial
 from eomgen.symbolic.exact.terms import (
     ONE,
     AngleSum,

@@ -13,9 +13,8 @@ from math import gcd
 from operator import and_
 
 from eomgen.symbolic.exact.expansion import Expansion
-from eomgen.symbolic.exact.polynomials import axes_of, eliminated, power_form
+from eomgen.symbolic.exact.polynomials import PowerSum, axes_of, eliminated, power_form, shortest_on
 from eomgen.symbolic.exact.quotient import Radical, one_root, powers_in
-from eomgen.symbolic.exact.rational_polynomial import PowerSum
 from eomgen.symbolic.exact.terms import (
     ONE,
     RADIAN,
@@ -32,7 +31,6 @@ from eomgen.symbolic.exact.terms import (
     vector_sum,
     wave,
 )
-from eomgen.symbolic.exact.unit_quaternions import shortest_on
 from eomgen.symbolic.expression import Fraction, Node, Number, Scalar, tidy
 from eomgen.symbolic.print import text_size
 

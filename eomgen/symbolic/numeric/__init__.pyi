@@ -12,6 +12,12 @@ from eomgen.symbolic.numeric.arithmetic import follows as follows
 # Values at a state of numbers of 50 digits, in balls
 from eomgen.symbolic.numeric.arithmetic import in_balls as in_balls
 
+# The number of an exact form to double precision; nan where it has none
+from eomgen.symbolic.numeric.arithmetic import number_of as number_of
+
+# The numbers of several exact forms, as of `number_of`
+from eomgen.symbolic.numeric.arithmetic import numbers_of as numbers_of
+
 # (D A E, D, E) with the largest entry of every row and column of D A E near 1
 from eomgen.symbolic.numeric.dense import balanced as balanced
 
@@ -77,10 +83,6 @@ from eomgen.symbolic.numeric.evaluation import floats_of as floats_of
 
 # The scalars with each symbol replaced by what its name means in another graph
 from eomgen.symbolic.numeric.evaluation import transplanted as transplanted
-from eomgen.symbolic.numeric.isolation import JUMPS as JUMPS
-
-# The roots of as many equations as unknowns in the box from `low` to `high`; None where they have jumps
-from eomgen.symbolic.numeric.isolation import isolated as isolated
 from eomgen.symbolic.numeric.pieces import Choices as Choices
 
 # A quantity, and the values of it at which something changes its form
@@ -103,6 +105,7 @@ from eomgen.symbolic.numeric.pieces import piecewise_nodes as piecewise_nodes
 
 # Every switch in the scalars that something that moves can throw
 from eomgen.symbolic.numeric.pieces import switches_of as switches_of
+from eomgen.symbolic.numeric.roots import JUMPS as JUMPS
 
 # Equations in some unknowns
 from eomgen.symbolic.numeric.roots import Descent as Descent
@@ -113,14 +116,11 @@ from eomgen.symbolic.numeric.roots import Newton as Newton
 # The roots to which the starts lead, each once, the nearest first
 from eomgen.symbolic.numeric.roots import all_roots as all_roots
 
+# The roots of as many equations as unknowns in the box from `low` to `high`; None where they have jumps
+from eomgen.symbolic.numeric.roots import isolated as isolated
+
 # The place nearby where |f|^2 is least, in floats: a root, or how near the equations come to one
 from eomgen.symbolic.numeric.roots import least_left as least_left
-
-# The number of an exact form to double precision; nan where it has none
-from eomgen.symbolic.numeric.sure_numbers import number_of as number_of
-
-# The numbers of several exact forms, as of `number_of`
-from eomgen.symbolic.numeric.sure_numbers import numbers_of as numbers_of
 
 # commands, numbers and letters of the formulas of one page that are read back
 from eomgen.symbolic.numeric.work import READ_BACK as READ_BACK
