@@ -10,7 +10,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 import eomgen
-from eomgen.documents.letters import NamesArtist
+from eomgen.documents.drawing import NamesArtist
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.free_bodies.reactions import Reactions
 from eomgen.mechanics.free_bodies.structure import Structure

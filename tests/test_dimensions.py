@@ -13,9 +13,9 @@ from each import each
 import eomgen
 from eomgen.errors import ModelError
 from eomgen.model.catalog import Catalog
-from eomgen.model.dimensions import Names, inferred
 from eomgen.model.inference import BASE, Dimension, Inference, dimension_of_unit
 from eomgen.model.quantities import Unit
+from eomgen.model.units import Names, inferred
 from eomgen.verbs.derive import derive_document
 
 MODEL = """

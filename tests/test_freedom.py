@@ -12,7 +12,7 @@ import eomgen
 from eomgen.documents import rendered
 from eomgen.mechanics.constraints.rank import Freedom
 from eomgen.proof.degrees_of_freedom import counted_otherwise, lines_otherwise, standing_otherwise
-from eomgen.results.check import check_document
+from eomgen.results.declared import check_document
 from eomgen.study.checked import checked_model
 
 HEAD = """
@@ -235,7 +235,7 @@ def test_a_count_that_is_printed_or_told_otherwise_is_seen():
 
 def test_what_the_rank_contradicts_is_not_ok_for_machines(monkeypatch):
     """`check --json`: ok is false, and the problem stands there, where the count is not that of the differences"""
-    from eomgen.results import check
+    from eomgen.results import declared as check
 
     monkeypatch.setattr(check, "counted_otherwise", lambda *_: "another count")
     reported = check_document(eomgen.load(Path(__file__).parent.parent / "models" / "four_bar.toml")).entries()

@@ -465,7 +465,7 @@ READERS = {  # classes beside `Study` that cache more than two things derived of
         "the linearization, the instant and the equilibrium, where an output needs them",
     ),
     "results.at_rest.result.Statics": (6, "values, sections and the derivation of a structure"),
-    "results.at_rest.structure.StaticScene": (4, "the picture of a structure, and its sizes"),
+    "results.at_rest.pictures.StaticScene": (4, "the picture of a structure, and its sizes"),
     "results.small_motions.result.Linearization": (3, "its derivation, its entries, and its matrices in sympy"),
     "runs.simulator.Simulator": (5, "equations that were derived at other values"),
     "scene.scene.Scene": (3, "the scalars of a frame and their program"),
@@ -479,7 +479,7 @@ READERS = {  # classes beside `Study` that cache more than two things derived of
     "simulation.phase_models.DerivedAt": (6, "decisions that were taken at values of parameters"),
     "simulation.phase_models.PhaseModels": (3, "the phases of a motion by their contacts"),
     "simulation.reaction_columns.ReactionColumns": (6, "reactions of a whole run, solved at once"),
-    "study.cut_bodies.CutState": (6, "the bodies at one instant, with every force"),
+    "study.instant.CutState": (6, "the bodies at one instant, with every force"),
     "study.motion.MotionFromStart": (6, "phases, instants and runs of the motion from the start"),
     "sweeps.design.SweepPlan": (3, "the model of a plan, its design, and the slopes that are asked"),
 }

@@ -11,8 +11,8 @@ import pytest
 
 import eomgen
 from eomgen.documents import drawing_at_rest
+from eomgen.documents.drawing import PageBox
 from eomgen.documents.drawing_on_a_page import _pieces, flat_drawing
-from eomgen.documents.letters import PageBox
 from eomgen.documents.space_drawing import SpaceView, rest_picture
 from eomgen.page.svg_picture import model_svg, signs_of
 

@@ -37,6 +37,12 @@ from eomgen.documents.document import plain_document as plain_document
 from eomgen.documents.document import with_symbols as with_symbols
 from eomgen.documents.drawing import INK as INK
 
+# The names of one panel
+from eomgen.documents.drawing import NamesArtist as NamesArtist
+
+# A name and its place
+from eomgen.documents.drawing import PlacedName as PlacedName
+
 # One stroke, in its layer
 from eomgen.documents.drawing import artist_of as artist_of
 
@@ -138,12 +144,6 @@ from eomgen.documents.latex import side_latex as side_latex
 # The document with sentences and formulas in place of listings
 from eomgen.documents.latex import with_listings_typeset as with_listings_typeset
 
-# The names of one panel
-from eomgen.documents.letters import NamesArtist as NamesArtist
-
-# A name and its place
-from eomgen.documents.letters import PlacedName as PlacedName
-
 # Quantities in a table, a row each: name, formula and number typeset; one longer than a line is shortened
 from eomgen.documents.markdown import listing_markdown as listing_markdown
 
@@ -165,11 +165,20 @@ from eomgen.documents.motion_steps import count as count
 # Step with the given data
 from eomgen.documents.motion_steps import data_step as data_step
 
+# Step with what a model file declares
+from eomgen.documents.motion_steps import given_step as given_step
+
 # The symbols, with commas between
 from eomgen.documents.motion_steps import listed_symbols as listed_symbols
 
 # Statement that names the contacts that are open where the system rests; none where all are closed
 from eomgen.documents.motion_steps import open_at_rest as open_at_rest
+
+# A step for each question of a sheet
+from eomgen.documents.motion_steps import question_steps as question_steps
+
+# Step with the words of the problem
+from eomgen.documents.motion_steps import statement_step as statement_step
 
 # Quantities that derivations of a system name, each name once
 from eomgen.documents.names_derived import NamedQuantity as NamedQuantity
@@ -263,15 +272,6 @@ from eomgen.documents.result import fragment_of as fragment_of
 
 # The document in one of the formats of ALL: text, latex, markdown, json
 from eomgen.documents.result import rendered as rendered
-
-# Step with what a model file declares
-from eomgen.documents.sheet import given_step as given_step
-
-# A step for each question of a sheet
-from eomgen.documents.sheet import question_steps as question_steps
-
-# Step with the words of the problem
-from eomgen.documents.sheet import statement_step as statement_step
 from eomgen.documents.space_drawing import PagePoint as PagePoint
 
 # A system in one configuration, in numbers

@@ -11,8 +11,16 @@ from itertools import groupby
 import numpy as np
 
 from eomgen.documents.document import notation_of
-from eomgen.documents.drawing import StrokeLook, letter_names, limits, look_of
-from eomgen.documents.letters import PageBox, PlacedName, dots_along, room_for
+from eomgen.documents.drawing import (
+    PageBox,
+    PlacedName,
+    StrokeLook,
+    dots_along,
+    letter_names,
+    limits,
+    look_of,
+    room_for,
+)
 from eomgen.documents.space_drawing import SpaceView, page_limits
 from eomgen.frozen import dataclass
 from eomgen.scene import Drawing, Scene, Stroke

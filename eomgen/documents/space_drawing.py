@@ -24,12 +24,13 @@ from eomgen.documents.drawing import (
     OWN_COLORS,
     RANKS,
     SMALLEST,
+    NamesArtist,
+    PlacedName,
     draw,
     limits,
     written,
 )
 from eomgen.documents.figures import Picture
-from eomgen.documents.letters import NamesArtist, PlacedName
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.model import Model
@@ -348,7 +349,7 @@ def draw_space(
         notation: typesetting of the names of the model.
         colors: of bodies and members that have one of their own.
     """
-    from eomgen.documents.letters import NamesArtist
+    from eomgen.documents.drawing import NamesArtist
 
     picture = SpacePicture(panel, drawing, colors)
     picture.show(0)

@@ -1,8 +1,6 @@
 """Door of the room: what other rooms may import from `eomgen.model`."""
 
 # The parameters, each after those in its expression; and the rings of those that need one another
-from eomgen.model.arithmetic import in_order as in_order
-
 # True if a body can have the moments: J = tr(I)/2 - I has no negative eigenvalue (by its principal minors)
 from eomgen.model.checks.bodies import possible as possible
 
@@ -44,9 +42,6 @@ from eomgen.model.contacts import Contact as Contact
 
 # "did you mean 'forearm'?", or "" where nothing is near
 from eomgen.model.diagnostics import nearest as nearest
-
-# A law of the state: an expression with coordinates, rates or speeds in it; None for everything else
-from eomgen.model.driven import law_of as law_of
 from eomgen.model.expansion import tables_read as tables_read
 
 # Parts of the words of a problem that are no words: $formula$, {name}
@@ -176,6 +171,15 @@ from eomgen.model.parts import Parameter as Parameter
 
 # A state of first order: a current, a pressure, a temperature, an integral, z' = `rate`
 from eomgen.model.parts import StateVariable as StateVariable
+
+# The name in messages of a body of a model in parts: body 'bar', node 'T.n1'
+from eomgen.model.parts import called as called
+
+# The path of its declaration: bodies.bar, trusses.T.nodes.n1
+from eomgen.model.parts import declared_at as declared_at
+
+# True if a body of a model in parts is a node of a truss
+from eomgen.model.parts import is_node as is_node
 from eomgen.model.quantities import Typed as Typed
 
 # factor * pi^pi_power, in units of SI
@@ -251,6 +255,12 @@ from eomgen.model.replaced import typed_values as typed_values
 # The model with other values of inputs: numbers in SI or with a unit, expressions of t and the parameters
 from eomgen.model.replaced import with_inputs as with_inputs
 
+# The model in which what only constraints can hold has displacements; the other bodies keep their joints
+from eomgen.model.restated import freed as freed
+
+# A law of the state: an expression with coordinates, rates or speeds in it; None for everything else
+from eomgen.model.restated import law_of as law_of
+
 # A function of time through samples, for `motion`, `rate`, `acceleration` or an input; arrays are welcome
 from eomgen.model.sampled_laws import samples as samples
 
@@ -290,20 +300,9 @@ from eomgen.model.shapes.forms import PrismForm as PrismForm
 # A body of revolution: the profile (r, z) swept about the axis z
 from eomgen.model.shapes.forms import RevolutionForm as RevolutionForm
 
-# The name in messages of a body of a model in parts: body 'bar', node 'T.n1'
-from eomgen.model.trusses import called as called
-
-# The path of its declaration: bodies.bar, trusses.T.nodes.n1
-from eomgen.model.trusses import declared_at as declared_at
-
-# True if a body of a model in parts is a node of a truss
-from eomgen.model.trusses import is_node as is_node
-
-# The model in which what only constraints can hold has displacements; the other bodies keep their joints
-from eomgen.model.unassembled import freed as freed
-
 # after the name of an output's column, where another column has that name
 from eomgen.model.units import OUTPUT as OUTPUT
+from eomgen.model.values import in_order as in_order
 
 # The error of a quaternion that is 0 at the start
 from eomgen.model.values import no_orientation as no_orientation

@@ -9,14 +9,14 @@ from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from typing import Any
 
-from eomgen.model.arithmetic import AnyNumber, in_order
 from eomgen.model.catalog import SYMBOL_TABLES, Catalog, owner_of
 from eomgen.model.checks.bodies import possible
 from eomgen.model.diagnostics import Diagnostic, whereabouts
-from eomgen.model.dimensions import inferred
 from eomgen.model.fields import STATEMENT, Leaf, NameRule, StatementRule, WrittenEquation
 from eomgen.model.positions import DocumentPath
 from eomgen.model.sampled_laws import laws_through_samples
+from eomgen.model.units import inferred
+from eomgen.model.values import AnyNumber, in_order
 from eomgen.symbolic.expression import Expression, Fraction
 from eomgen.symbolic.numeric import tolerances
 from eomgen.symbolic.print import Symbol

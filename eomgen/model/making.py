@@ -12,13 +12,12 @@ from eomgen.model.checks.bodies import bodies, numbers
 from eomgen.model.checks.names import equations, formulas, missing_point, names, references, speeds
 from eomgen.model.constraints import Limit
 from eomgen.model.diagnostics import Diagnostic, nearest
-from eomgen.model.dimensions import dimensions
 from eomgen.model.fields import Leaf, NameRule, Table, WrittenEquation, in_si
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.base import AXES, DRY_JOINT, SIDES
 from eomgen.model.part import Part, read_part
 from eomgen.model.positions import DocumentPath
-from eomgen.model.typed import Typing, typing_of
+from eomgen.model.units import Typing, dimensions, typing_of
 from eomgen.model.value_tables import TABLES, functions_of_tables, with_functions
 from eomgen.symbolic.expression import NAMES, Call, Expression, Reference, parse, rate_of_call
 

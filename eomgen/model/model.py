@@ -12,9 +12,7 @@ from eomgen.model.catalog import Catalog
 from eomgen.model.constraints import Constraint
 from eomgen.model.constraints.link import Members, trusses_of
 from eomgen.model.contacts import Connections
-from eomgen.model.declared_speeds import begun_speeds
 from eomgen.model.diagnostics import Diagnostic
-from eomgen.model.dimensions import Inferred, inferred, inferred_units
 from eomgen.model.expansion import PartsRule, Repetition, RepetitionRule
 from eomgen.model.fields import (
     Leaf,
@@ -46,11 +44,12 @@ from eomgen.model.parts import (
     StateVariable,
     Truss,
     Unknown,
+    begun_speeds,
+    in_parts,
 )
 from eomgen.model.positions import DocumentPath
 from eomgen.model.sampled_laws import given_samples, left_tables
-from eomgen.model.trusses import in_parts
-from eomgen.model.units import UnitsOfNames
+from eomgen.model.units import Inferred, UnitsOfNames, inferred, inferred_units
 from eomgen.model.value_tables import ValueTable
 from eomgen.model.values import Numbers
 from eomgen.symbolic.expression import DeclaredSamples, Expression, Sampled, TableFunction

@@ -1,10 +1,12 @@
 """Text or Python -> Model: what a user declares. Frozen values that compute nothing."""
 
+from collections.abc import Mapping
 from dataclasses import field
 from typing import Annotated, Any, ClassVar, Self
 
 from eomgen.frozen import dataclass
 from eomgen.model import joints, shapes
+from eomgen.model.constraints.link import Members
 from eomgen.model.fields import (
     EVERY,
     UNIT,
@@ -25,6 +27,7 @@ from eomgen.model.fields import (
 )
 from eomgen.model.joints import Joint
 from eomgen.model.joints.base import Turns
+from eomgen.model.joints.placed import Placed
 from eomgen.model.kinds import (
     ConstantAngle,
     Coordinates,
@@ -47,6 +50,7 @@ from eomgen.model.kinds import (
 from eomgen.model.part import Part, PartRule, SeamRule
 from eomgen.model.quantities import Unit
 from eomgen.model.shapes import Shape
+from eomgen.model.shapes.lines import Particle
 from eomgen.symbolic.expression import Expression
 
 UnitText = Annotated[Unit, UNIT]
@@ -393,3 +397,76 @@ class Question(Part):
     title: ClassVar[str] = "a question"
     text: Annotated[str, StatementRule()]
     outputs: Annotated[tuple[str, ...], ListRule(NameRule("output"), 1, single=True)] | None = None
+
+
+# -------- trusses ----------------------------------------------------------------------------------------------
+# Model -> the same model in bodies and constraints alone: nodes of trusses are massless points, their members
+# constraints.
+#
+# A node "T.n1" is a body of that name: a particle without mass, placed where the node is. The members of truss T are
+# the rows of one constraint T.
+
+
+def in_parts(model: Any) -> Any:
+    """The model with its trusses replaced by bodies and constraints; the model itself where it has none."""
+    if not model.trusses:
+        return model
+    nodes = {f"{name}.{node}": _node(at) for name, truss in model.trusses.items() for node, at in truss.nodes.items()}
+    members = {name: _members(name, truss) for name, truss in model.trusses.items() if truss.members}
+    return model.altered(
+        bodies=Table({**model.bodies, **nodes}),
+        constraints=Table({**model.constraints, **members}),
+        trusses=Table(),
+    )
+
+
+def _node(at: tuple[Expression, ...]) -> Body:
+    point = Particle.of_values({"mass": Expression.number(0)})
+    return Body.of_values({"shape": point, "joint": Placed.of_values({"at": at})})
+
+
+def _members(name: str, truss: Truss) -> Members:
+    return Members.of_values({"truss": name, "members": truss.members})
+
+
+def is_node(body: str) -> bool:
+    """True if a body of a model in parts is a node of a truss."""
+    return "." in body
+
+
+def called(body: str) -> str:
+    """The name in messages of a body of a model in parts: body 'bar', node 'T.n1'."""
+    return f"node '{body}'" if is_node(body) else f"body '{body}'"
+
+
+def declared_at(body: str) -> str:
+    """The path of its declaration: bodies.bar, trusses.T.nodes.n1."""
+    truss, dot, node = body.partition(".")
+    return f"trusses.{truss}.nodes.{node}" if dot else f"bodies.{body}"
+
+
+# -------- declared speeds --------------------------------------------------------------------------------------
+# Declared speeds -> those with start values of their own, and those that start by the rates of the coordinates.
+
+
+def begun_speeds(speeds: Mapping[str, Any]) -> dict[str, frozenset[str]]:
+    """{speed: the rates that go with it} of those that have a `start`, or share rates with one that has.
+
+    Sharing reaches through others: where w1 holds x' and y', and w2 holds y' and z', a start of w2 decides for both.
+    """
+    groups: list[tuple[set[str], set[str]]] = []
+    for name, part in speeds.items():
+        rates = {x for x in _names(part) if x.endswith("'")}
+        joined = [group for group in groups if group[1] & rates]
+        groups = [group for group in groups if group not in joined]
+        groups.append(({name}.union(*(g[0] for g in joined)), rates.union(*(g[1] for g in joined))))
+    begun = [group for group in groups if any(_begins(speeds[name]) for name in group[0])]
+    return {name: frozenset(rates) for names, rates in begun for name in names}
+
+
+def _names(part: Any) -> frozenset[str]:
+    return frozenset() if part is None or part.rate is None else frozenset(part.rate.names)
+
+
+def _begins(part: Any) -> bool:
+    return part is not None and part.start is not None

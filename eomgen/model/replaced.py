@@ -23,14 +23,14 @@ from eomgen.errors import ExpressionError, ModelError, UsageError
 from eomgen.files import read
 from eomgen.frozen import dataclass
 from eomgen.model.diagnostics import Diagnostic, nearest
-from eomgen.model.driven import law_of, with_feedback
 from eomgen.model.expansion import counted_anew
 from eomgen.model.fields import EVERY, AtRest, Table, WrittenEquation, is_mixed
 from eomgen.model.model import Model
 from eomgen.model.parts import Coordinate, Output
 from eomgen.model.quantities import Typed, Unit, parse_typed_equation
+from eomgen.model.restated import law_of, with_feedback
 from eomgen.model.sampled_laws import TimeLawRule, samples
-from eomgen.model.typed import Settled, Typing, shown
+from eomgen.model.units import Settled, Typing, shown
 from eomgen.symbolic.expression import Expression, parse
 
 Values = Mapping[str, Typed]

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from eomgen.errors import ExpressionError, MissingValues, ModelError
 from eomgen.frozen import dataclass
-from eomgen.model.arithmetic import AnyNumber, in_order
 from eomgen.model.diagnostics import nearest
 from eomgen.model.fields import Table
 from eomgen.model.parts import Body, Coordinate, Parameter, Speed, StateVariable
-from eomgen.symbolic.expression import Expression, Graph, as_expression
+from eomgen.symbolic.expression import Expression, Fraction, Graph, as_expression
 
 
 class Numbers:
@@ -204,3 +203,36 @@ class Quaternion:
     body: str
     coordinates: tuple[str, ...]
     speeds: tuple[str, ...]
+
+
+# -------- arithmetic -------------------------------------------------------------------------------------------
+# Expressions of parameters -> numbers: the order in which parameters follow from one another, and their values.
+
+AnyNumber = int | Fraction | float
+
+
+def in_order(parameters: Mapping[str, Expression | None]) -> tuple[list[str], list[list[str]]]:
+    """The parameters, each after those in its expression; and the rings of those that need one another."""
+    ordered: dict[str, None] = {}
+    rings: list[list[str]] = []
+    for first in parameters:
+        trail = {} if first in ordered else {first: _needed(parameters, first)}
+        while trail:
+            name, needed = next(reversed(trail.items()))
+            other = next((n for n in needed if n not in ordered), None)
+            if other is None:
+                ordered[name] = None
+                del trail[name]
+            elif other in trail:
+                names = list(trail)
+                rings.append(names[names.index(other) :])
+                ordered |= dict.fromkeys(names)
+                break
+            else:
+                trail[other] = _needed(parameters, other)
+    return list(ordered), rings
+
+
+def _needed(parameters: Mapping[str, Expression | None], name: str) -> Iterator[str]:
+    value = parameters[name]
+    return iter(sorted(value.names & parameters.keys())) if value is not None else iter(())

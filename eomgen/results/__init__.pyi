@@ -30,14 +30,14 @@ from eomgen.results.bodies_cut_free import FreeBodies as FreeBodies
 # Each body of a model cut free, with its forces, reactions and inertia
 from eomgen.results.bodies_cut_free import free_bodies as free_bodies
 
-# The model's parts and its degrees of freedom, by rank and by the counting formula
-from eomgen.results.check import check_document as check_document
-
 # The impact where contacts close: its equations, impulses, the speeds after it, the loss of energy
 from eomgen.results.closing_contacts import impact as impact
 
+# The model's parts and its degrees of freedom, by rank and by the counting formula
+from eomgen.results.declared import check_document as check_document
+
 # Differences of the second of two models from the first, not proven yet
-from eomgen.results.difference import difference_document as difference_document
+from eomgen.results.declared import difference_document as difference_document
 
 # Mass, mass centre, tensor, principal moments and axes of bodies, each about its mass centre in its own axes
 from eomgen.results.mass_properties.result import inertia as inertia

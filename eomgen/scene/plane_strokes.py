@@ -9,6 +9,7 @@ import numpy as np
 
 from eomgen.model import ArcForm, LineForm, PolygonForm
 from eomgen.scene import forms
+from eomgen.scene.forms import PLANE, TEETH
 from eomgen.scene.scene import Mark, plain_number
 from eomgen.scene.strokes import (
     DrawerTable,
@@ -18,7 +19,6 @@ from eomgen.scene.strokes import (
     SceneNumbers,
     Stroke,
 )
-from eomgen.scene.symbols import PLANE, TEETH
 from eomgen.symbolic.expression import Vector
 
 HEAD = np.array([[0.0, 0.0], [-1.1, 0.36], [-0.85, 0.0], [-1.1, -0.36], [0.0, 0.0]])  # of an arrow, its tip at 0

@@ -17,7 +17,7 @@ from eomgen.codegen import Program, RightHandSide
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.model import Form
-from eomgen.scene.symbols import symbols_used
+from eomgen.scene.forms import symbols_used
 from eomgen.study import StateInNumbers
 from eomgen.symbolic.expression import Node, Pose, Scalar, Vector, symbols_of
 from eomgen.symbolic.numeric import FLOAT, evaluate

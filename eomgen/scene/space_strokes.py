@@ -18,6 +18,7 @@ from eomgen.model import (
     RevolutionForm,
 )
 from eomgen.scene import forms, plane_strokes
+from eomgen.scene.forms import SPACE, TEETH
 from eomgen.scene.plane_strokes import barrel
 from eomgen.scene.scene import Mark, plain_number
 from eomgen.scene.strokes import (
@@ -32,7 +33,6 @@ from eomgen.scene.strokes import (
     Stroke,
     drawn_with,
 )
-from eomgen.scene.symbols import SPACE, TEETH
 from eomgen.symbolic.expression import Vector
 
 ROUND, FEWEST = 20, 8  # pieces of a turn, from the largest to the smallest

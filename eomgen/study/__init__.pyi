@@ -6,23 +6,23 @@ from eomgen.study.checked import Checked as Checked
 # Checks a model: degrees of freedom, redundancy, closure of loops, cautions
 from eomgen.study.checked import checked_model as checked_model
 
+# The centrodes of a body in numbers
+from eomgen.study.instant import CentrodeCurves as CentrodeCurves
+
 # The bodies of a model at one instant, cut free
-from eomgen.study.cut_bodies import CutState as CutState
+from eomgen.study.instant import CutState as CutState
 
 # A force or couple on a body that is cut free, in numbers
-from eomgen.study.cut_bodies import NumberedForce as NumberedForce
+from eomgen.study.instant import NumberedForce as NumberedForce
 
 # The bodies of a model at its start, where an equation is first met, or in equilibrium
-from eomgen.study.cut_bodies import cut_state as cut_state
+from eomgen.study.instant import cut_state as cut_state
+
+# The motion of a model at an instant, however the model gives it
+from eomgen.study.instant import kinematic_state as kinematic_state
 
 # The entry of a derivation in the cache; None where this package is not made of files
 from eomgen.study.kept_derivations import cached_derivation as cached_derivation
-
-# The centrodes of a body in numbers
-from eomgen.study.kinematics import CentrodeCurves as CentrodeCurves
-
-# The motion of a model at an instant, however the model gives it
-from eomgen.study.kinematics import kinematic_state as kinematic_state
 
 # The motion of a model from its start
 from eomgen.study.motion import MotionFromStart as MotionFromStart

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import eomgen
-from eomgen.results.check import check_document
+from eomgen.results.declared import check_document
 
 ROD = """
 eomgen = 1

@@ -10,7 +10,7 @@ import pytest
 
 import eomgen
 from eomgen.errors import ModelError
-from eomgen.results.check import check_document
+from eomgen.results.declared import check_document
 
 pytestmark = pytest.mark.slow
 

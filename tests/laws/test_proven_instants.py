@@ -14,7 +14,7 @@ from eomgen.documents.proven_documents import shown
 from eomgen.mechanics.instant import kinematic_state as relative_motion
 from eomgen.mechanics.instant import mechanism
 from eomgen.mechanics.kinematics.motion import Motion, VelocityField
-from eomgen.study import kinematics as velocities
+from eomgen.study import instant as velocities
 from eomgen.verbs.kinematics import kinematics_requested as verb
 
 pytestmark = pytest.mark.slow

@@ -625,7 +625,7 @@ def test_frobenius_and_chow_tell_what_a_row_of_velocities_is(name):
 
 def test_an_integral_is_given_with_the_constant_of_the_start(tmp_path):
     """x' = R theta': x - R theta - (0.1 - 0.4 R) = 0, from `check` in both forms."""
-    from eomgen.results.check import check_document
+    from eomgen.results.declared import check_document
 
     found = check_document(model_of(rates("x' - R*theta'"), "plane")).entries()
     (row,) = found["velocity_rows"]

@@ -59,7 +59,7 @@ from eomgen.symbolic.print import length_of, text_size, to_text
 #
 # q' = N u + nu. A free coordinate has its rate for a speed (a unit row of N); a driven one is a zero row of N and its
 # given rate in nu; a dependent one has the row that the constraints give, and is free until then. Declared speeds take
-# the place of rates last of all (`declared_speeds`); until then their names mean what they are in the rates.
+# the place of rates last of all (`begun_speeds`); until then their names mean what they are in the rates.
 
 
 TRIES = 20  # of values at random of what has none

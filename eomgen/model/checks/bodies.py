@@ -8,12 +8,12 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from eomgen.errors import ExpressionError
-from eomgen.model.arithmetic import AnyNumber, in_order
 from eomgen.model.catalog import Catalog
 from eomgen.model.composite import Composite, sources
 from eomgen.model.diagnostics import Diagnostic, shown, whereabouts
 from eomgen.model.fields import Leaf, VectorRule
 from eomgen.model.positions import DocumentPath
+from eomgen.model.values import AnyNumber, in_order
 from eomgen.symbolic.expression import Expression, Vector
 from eomgen.symbolic.numeric import tolerances
 

@@ -8,9 +8,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 from eomgen.errors import ExpressionError
-from eomgen.model.arithmetic import in_order
 from eomgen.model.catalog import OBJECT_TABLES, SYMBOL_TABLES, Catalog
-from eomgen.model.declared_speeds import begun_speeds
 from eomgen.model.diagnostics import Diagnostic, article, nearest, one_of
 from eomgen.model.fields import (
     EVERYTHING,
@@ -25,8 +23,10 @@ from eomgen.model.fields import (
     mixed,
 )
 from eomgen.model.outputs import FUNCTIONS
+from eomgen.model.parts import begun_speeds
 from eomgen.model.positions import DocumentPath
-from eomgen.model.typed import typing_of
+from eomgen.model.units import typing_of
+from eomgen.model.values import in_order
 from eomgen.symbolic.expression import DEGREES, NAMES, Expression, degrees, is_name, meant_name
 
 RESERVED = {"t": "time", "pi": "the constant", "nan": "no number", "inf": "no number", "infinity": "no number"}
