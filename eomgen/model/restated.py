@@ -1,7 +1,5 @@
 """Model -> the model stated otherwise: laws in place of its inputs; its bodies free to move but for constraints."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from dataclasses import replace
