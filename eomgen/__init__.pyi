@@ -1,7 +1,7 @@
 """The public names, for type checkers: at run time each is imported on its first use (`__init__.py`)."""
 
 from eomgen.documents.figures import run_picture as run_picture
-from eomgen.documents.space_drawing import rest_picture as rest_picture
+from eomgen.documents.scene_pictures import rest_picture as rest_picture
 from eomgen.equations import Equations as Equations
 from eomgen.errors import DerivationError as DerivationError
 from eomgen.errors import EomgenError as EomgenError

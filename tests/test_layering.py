@@ -412,7 +412,7 @@ READERS = {  # classes beside `Study` that cache more than two things derived of
         3,
         "reactions from one side of each joint, divisors of loads: seconds of algebra",
     ),
-    "documents.space_drawing.Sketch": (5, "a drawing, its frame and its points, which several pictures share"),
+    "documents.scene_pictures.Sketch": (5, "a drawing, its frame and its points, which several pictures share"),
     "equations.Equations": (7, "texts and forms that a user asks again: printed, derived by its method, in sympy"),
     "generated.Generated": (7, "programs that several files are written of"),
     "judge.balances.Balances": (11, "states, the answer and its mistakes, for every number of mistakes that is tried"),
@@ -444,7 +444,7 @@ READERS = {  # classes beside `Study` that cache more than two things derived of
         8,
         "the characteristic polynomial, its roots, conditions and transfer functions",
     ),
-    "mechanics.linearization.parameter_sensitivities.ParameterSlopes": (
+    "mechanics.linearization.responses.ParameterSlopes": (
         3,
         "slopes of the reference, of M, C and K, and of A",
     ),

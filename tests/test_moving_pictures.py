@@ -22,7 +22,7 @@ import eomgen
 from eomgen.cli import main
 from eomgen.codegen.program import Program
 from eomgen.codegen.rhs import RightHandSide
-from eomgen.documents.space_drawing import SpacePicture, sight
+from eomgen.documents.scene_pictures import SpacePicture, sight
 from eomgen.mechanics.dynamics.system import System
 from eomgen.page import animation as animate
 from eomgen.page import moving_picture
@@ -32,11 +32,10 @@ from eomgen.results.small_motions.result import linearize
 from eomgen.scene.bodies import parameters_as_drawn
 from eomgen.scene.forms import ArrowForm, CoupleForm
 from eomgen.scene.frames_of_phases import phase_frames
-from eomgen.scene.making import scene_of_system
+from eomgen.scene.making import SWING, VirtualDisplacement, scene_of_system
 from eomgen.scene.scene import frames_along, scalars_of
 from eomgen.scene.space_strokes import drawing_of
 from eomgen.scene.strokes import SceneNumbers
-from eomgen.scene.virtual import SWING, VirtualDisplacement
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 pytestmark = pytest.mark.slow

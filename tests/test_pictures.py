@@ -11,7 +11,7 @@ from slow_run import sampled
 import eomgen
 from eomgen.documents.drawing import limits
 from eomgen.documents.figures import four_figures, scale_of
-from eomgen.documents.space_drawing import drawing_at_rest
+from eomgen.documents.scene_pictures import drawing_at_rest
 from eomgen.model.reader import loads
 from eomgen.results.mass_properties.result import values_at_start
 from eomgen.scene import forms, plane_strokes

@@ -13,7 +13,7 @@ import pytest
 from slow_run import sampled, usual
 
 import eomgen
-from eomgen.documents.space_drawing import drawing_at_rest
+from eomgen.documents.scene_pictures import drawing_at_rest
 from eomgen.page.animation import movie_read_back
 from eomgen.page.moving_picture import Movie, movie_of
 from eomgen.page.player import (

@@ -18,7 +18,7 @@ from slow_run import beside, sampled, usual, usual_models
 import eomgen
 from eomgen.documents.drawing import NamesArtist, PageBox, dots_along, room_for
 from eomgen.documents.figures import Picture
-from eomgen.documents.space_drawing import drawing_at_rest, rest_picture, sight
+from eomgen.documents.scene_pictures import drawing_at_rest, rest_picture, sight
 from eomgen.mechanics.dynamics.system import System
 from eomgen.scene import forms, plane_strokes, space_strokes
 from eomgen.scene.bodies import parameters_as_drawn

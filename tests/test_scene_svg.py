@@ -12,9 +12,8 @@ import pytest
 import eomgen
 from eomgen.documents import drawing_at_rest
 from eomgen.documents.drawing import PageBox
-from eomgen.documents.drawing_on_a_page import _pieces, flat_drawing
-from eomgen.documents.space_drawing import SpaceView, rest_picture
-from eomgen.page.svg_picture import model_svg, signs_of
+from eomgen.documents.scene_pictures import SpaceView, _pieces, flat_drawing, rest_picture
+from eomgen.page.figure import model_svg, signs_of
 
 MODELS = Path(__file__).parent.parent / "models"
 SVG = "{http://www.w3.org/2000/svg}"

@@ -6,11 +6,24 @@ from eomgen.documents.bounded import page as page
 # A table; where its columns do not fit side by side a formula for each of its cells
 from eomgen.documents.bounded import tabled as tabled
 
+# Quantities that derivations of a system name, each name once
+from eomgen.documents.derivation import NamedQuantity as NamedQuantity
+
+# A reaction that outputs can request by one name, with the letters that it has in derivations
+from eomgen.documents.derivation import RequestedReaction as RequestedReaction
+
 # The derivation of the equations of motion of a system
 from eomgen.documents.derivation import derivation_of as derivation_of
 
+# A reaction that an output names, with its meaning in words and its letter
+from eomgen.documents.derivation import found_reaction as found_reaction
+from eomgen.documents.derivation import named_quantities as named_quantities
+
 # The formulas that hold at any state, and the stated first integrals, as they are printed
 from eomgen.documents.derivation import printed_formulas as printed_formulas
+
+# Reactions of a system, without those that need the name of a body too
+from eomgen.documents.derivation import requested_reactions as requested_reactions
 
 # {name: keys} of sections that are called by one name
 from eomgen.documents.document import SECTION_GROUPS as SECTION_GROUPS
@@ -48,15 +61,6 @@ from eomgen.documents.drawing import artist_of as artist_of
 
 # The corners of the picture: all that is drawn, but for tracks, which go on
 from eomgen.documents.drawing import limits as limits
-
-# A name of a picture in its box
-from eomgen.documents.drawing_on_a_page import FlatName as FlatName
-
-# A line, a face or a dot on the page of a picture
-from eomgen.documents.drawing_on_a_page import FlatShape as FlatShape
-
-# A scene at the first frame of its drawing, on its page
-from eomgen.documents.drawing_on_a_page import flat_drawing as flat_drawing
 
 # M a + c = Q + J^T lam, row by row
 from eomgen.documents.equation_steps import sides_of as sides_of
@@ -179,19 +183,6 @@ from eomgen.documents.motion_steps import question_steps as question_steps
 
 # Step with the words of the problem
 from eomgen.documents.motion_steps import statement_step as statement_step
-
-# Quantities that derivations of a system name, each name once
-from eomgen.documents.names_derived import NamedQuantity as NamedQuantity
-
-# A reaction that outputs can request by one name, with the letters that it has in derivations
-from eomgen.documents.names_derived import RequestedReaction as RequestedReaction
-
-# A reaction that an output names, with its meaning in words and its letter
-from eomgen.documents.names_derived import found_reaction as found_reaction
-from eomgen.documents.names_derived import named_quantities as named_quantities
-
-# Reactions of a system, without those that need the name of a body too
-from eomgen.documents.names_derived import requested_reactions as requested_reactions
 from eomgen.documents.pages_read import GREEK_LETTERS as GREEK_LETTERS
 from eomgen.documents.pages_read import PAGES as PAGES
 
@@ -272,37 +263,46 @@ from eomgen.documents.result import fragment_of as fragment_of
 
 # The document in one of the formats of ALL: text, latex, markdown, json
 from eomgen.documents.result import rendered as rendered
-from eomgen.documents.space_drawing import PagePoint as PagePoint
+
+# A name of a picture in its box
+from eomgen.documents.scene_pictures import FlatName as FlatName
+
+# A line, a face or a dot on the page of a picture
+from eomgen.documents.scene_pictures import FlatShape as FlatShape
+from eomgen.documents.scene_pictures import PagePoint as PagePoint
 
 # A system in one configuration, in numbers
-from eomgen.documents.space_drawing import Sketch as Sketch
+from eomgen.documents.scene_pictures import Sketch as Sketch
 
 # A scene in space on matplotlib axes; `show` sets it to another of its frames
-from eomgen.documents.space_drawing import SpacePicture as SpacePicture
+from eomgen.documents.scene_pictures import SpacePicture as SpacePicture
 
 # A sketch on matplotlib axes, which have equal scales and no frame
-from eomgen.documents.space_drawing import draw_model as draw_model
+from eomgen.documents.scene_pictures import draw_model as draw_model
 
 # A scene at its first frame, on matplotlib axes with equal scales and no frame
-from eomgen.documents.space_drawing import draw_scene as draw_scene
+from eomgen.documents.scene_pictures import draw_scene as draw_scene
 
 # A scene at the start of its model, with its dimensions
-from eomgen.documents.space_drawing import drawing_at_rest as drawing_at_rest
+from eomgen.documents.scene_pictures import drawing_at_rest as drawing_at_rest
+
+# A scene at the first frame of its drawing, on its page
+from eomgen.documents.scene_pictures import flat_drawing as flat_drawing
 
 # A name written along a line; the others keep off it
-from eomgen.documents.space_drawing import name_along as name_along
+from eomgen.documents.scene_pictures import name_along as name_along
 
 # Height over width of the page of a drawing
-from eomgen.documents.space_drawing import page_shape as page_shape
+from eomgen.documents.scene_pictures import page_shape as page_shape
 
 # A scene at the start of its model
-from eomgen.documents.space_drawing import picture_of_scene as picture_of_scene
+from eomgen.documents.scene_pictures import picture_of_scene as picture_of_scene
 
 # The scene of a model at its start; a parameter without a value is drawn as 1
-from eomgen.documents.space_drawing import rest_picture as rest_picture
+from eomgen.documents.scene_pictures import rest_picture as rest_picture
 
 # The rotation from the ground to the page: right, up, towards the eye
-from eomgen.documents.space_drawing import sight as sight
+from eomgen.documents.scene_pictures import sight as sight
 from eomgen.documents.statements import Cell as Cell
 
 # Something that a user types

@@ -12,6 +12,9 @@ from eomgen.page.animation import refuse_ending as refuse_ending
 # A model and the results for it
 from eomgen.page.contents import Report as Report
 
+# The picture of a model at its start, as one element <svg>
+from eomgen.page.figure import model_svg as model_svg
+
 # The steps of a document as a part of a page
 from eomgen.page.html import document_html as document_html
 
@@ -41,6 +44,3 @@ from eomgen.page.report import report_document as report_document
 
 # Writes the sheets of a class, and their key
 from eomgen.page.report import sheets_document as sheets_document
-
-# The picture of a model at its start, as one element <svg>
-from eomgen.page.svg_picture import model_svg as model_svg

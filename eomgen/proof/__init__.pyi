@@ -12,6 +12,9 @@ from eomgen.proof.at_a_state import NumericState as NumericState
 # Check the equations of a system
 from eomgen.proof.certificate import certify as certify
 
+# Check the places by the balance of forces, and by the equations of motion: nothing is accelerated there
+from eomgen.proof.certificate import certify_equilibria as certify_equilibria
+
 # Check the equations, every formula of a reaction, and its number at the start
 from eomgen.proof.certificate import certify_reactions as certify_reactions
 from eomgen.proof.check import SIGNS as SIGNS
@@ -160,9 +163,6 @@ from eomgen.proof.reported_small_motions import PrintedModes as PrintedModes
 
 # Check of a picture of small motions
 from eomgen.proof.reported_small_motions import small_motions_drawn as small_motions_drawn
-
-# Check the places by the balance of forces, and by the equations of motion: nothing is accelerated there
-from eomgen.proof.resting import certify_equilibria as certify_equilibria
 
 # Proof of a run: a trajectory -> its certificate
 from eomgen.proof.runs import RunProof as RunProof

@@ -2,13 +2,13 @@
 
 # An arrow in numbers
 # Weights, forces of springs and dampers, and the resultant force of every joint and constraint
-from eomgen.scene.acting import force_marks as force_marks
+from eomgen.scene.bodies import force_marks as force_marks
 
 # Resultants of the joints and constraints all of whose forces are among the names
-from eomgen.scene.acting import resultants as resultants
+from eomgen.scene.bodies import resultants as resultants
 
 # A load along a line with its name
-from eomgen.scene.acting import spread_mark as spread_mark
+from eomgen.scene.bodies import spread_mark as spread_mark
 
 # Scenes of the same bodies, one after the other, as one
 from eomgen.scene.frames_of_phases import joined as joined
@@ -22,6 +22,9 @@ from eomgen.scene.frames_of_phases import picture_reported as picture_reported
 # Forces, couples and line loads that the strokes of a drawing show at its first frame, with their words
 from eomgen.scene.frames_of_phases import pushes_reported as pushes_reported
 from eomgen.scene.making import DrawnArrow as DrawnArrow
+
+# A structure of which one reaction is released
+from eomgen.scene.making import VirtualDisplacement as VirtualDisplacement
 
 # The marks of arrows
 from eomgen.scene.making import arrow_marks as arrow_marks
@@ -56,6 +59,9 @@ from eomgen.scene.making import scene_of_system as scene_of_system
 # A scene with more marks, each in the place that its role has
 from eomgen.scene.making import scene_with as scene_with
 
+# Size of the displacement at which the body that moves most moves by SWING of the picture's extent
+from eomgen.scene.making import swing_of as swing_of
+
 # Something that is drawn
 from eomgen.scene.scene import Mark as Mark
 
@@ -88,9 +94,3 @@ from eomgen.scene.strokes import Stroke as Stroke
 
 # The lowest and the highest corner of points,
 from eomgen.scene.strokes import corners_of as corners_of
-
-# A structure of which one reaction is released
-from eomgen.scene.virtual import VirtualDisplacement as VirtualDisplacement
-
-# Size of the displacement at which the body that moves most moves by SWING of the picture's extent
-from eomgen.scene.virtual import swing_of as swing_of

@@ -20,7 +20,7 @@ from eomgen.mechanics.dynamics import System
 from eomgen.model import Form
 from eomgen.proof import ReportedArrow, ReportedPicture, ReportedPush
 from eomgen.scene import plane_strokes, space_strokes
-from eomgen.scene.acting import Resultant, force_marks, resultants
+from eomgen.scene.bodies import Resultant, force_marks, resultants
 from eomgen.scene.making import scene_of_system
 from eomgen.scene.scene import ROLES, Mark, Scene, SceneFrame, frames_along, is_moving, plain_number, scalars_of
 from eomgen.scene.strokes import Drawing, SceneNumbers, Stroke

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import eomgen
-from eomgen.proof.resting import balance_check
+from eomgen.proof.certificate import balance_check
 
 COLUMN = """
 eomgen = 1

@@ -16,9 +16,6 @@ from eomgen.mechanics.linearization.modes import Modes as Modes
 
 # All modes: those that oscillate first, the slowest of them first
 from eomgen.mechanics.linearization.modes import Spectrum as Spectrum
-
-# Derivatives of the reference and of the matrices with respect to a parameter
-from eomgen.mechanics.linearization.parameter_sensitivities import ParameterSlopes as ParameterSlopes
 from eomgen.mechanics.linearization.reduction import NAME as NAME
 
 # M du_i' + C du_i + K dq_i = B dw, dq_i' = F dq_i + E du_i
@@ -27,5 +24,8 @@ from eomgen.mechanics.linearization.reduction import LinearEquations as LinearEq
 # The equations of motion of a system, and their first derivatives, as graph scalars
 from eomgen.mechanics.linearization.reference import FirstOrder as FirstOrder
 
+# Derivatives of the reference and of the matrices with respect to a parameter
+from eomgen.mechanics.linearization.responses import ParameterSlopes as ParameterSlopes
+
 # A, B, C_y, D_y as rows, of scalars of the parameters or of floats
-from eomgen.mechanics.linearization.transfer import StateMatrices as StateMatrices
+from eomgen.mechanics.linearization.responses import StateMatrices as StateMatrices

@@ -15,7 +15,7 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.linearization.linearization import SmallMotions, motions_beside
 from eomgen.mechanics.linearization.reduction import LinearEquations, floats
-from eomgen.mechanics.linearization.transfer import (
+from eomgen.mechanics.linearization.responses import (
     StateMatrices,
     TransferFunction,
     transfer_functions,
