@@ -443,7 +443,8 @@ def said(balance: Balance, named: NamedReaction) -> str:
     if axis not in AXES and of_one and not balance.components[of_one[0]].is_wrench:
         return meaning(balance, balance.components[of_one[0]])
     if kind == "friction":
-        return f"friction in the joint {named.owner}"
+        force = balance.system.scope.model.forces.get(named.owner)
+        return f"friction {'in the joint' if force is None else f'of the {force.kind}'} {named.owner}"
     place = rest.removesuffix(")")
     side = place.partition(".")[2]
     mine = [c for c in balance.components if c.owner == named.owner and c.kind != "drive"]

@@ -111,10 +111,12 @@ class Catalog:
 
     @property
     def joints_with_friction(self) -> dict[str, bool]:
-        """{joint: True of a torque, False of a force} of all dry friction in joints."""
+        """{joint, brake, clutch or belt: True of a torque, False of a force} of all dry friction of a given rate."""
         joints = ((name, body.joint) for name, body in self.table("bodies").items() if body is not None and body.joint)
         found = ((body, joint, each) for body, joint in joints for each in joint.frictions)
-        return {joint.named_contact(body, field): law.amount == "torque" for body, joint, (_, field, law) in found}
+        forces = ((name, force.friction) for name, force in self.table("forces").items() if force is not None)
+        turns = {joint.named_contact(body, field): law.amount == "torque" for body, joint, (_, field, law) in found}
+        return turns | {name: law.amount == "torque" for name, law in forces if law is not None}
 
 
 def diagnostics_of_one(catalog: Catalog, path: DocumentPath, part: Any, keys: tuple[str, ...]) -> Iterator[Diagnostic]:

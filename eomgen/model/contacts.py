@@ -8,6 +8,7 @@ from functools import cached_property
 from eomgen.frozen import dataclass
 from eomgen.model.constraints import Constraint
 from eomgen.model.fields import Table
+from eomgen.model.forces import Force
 from eomgen.model.kinds import JointFriction, Resistance
 from eomgen.model.parts import Body, Coordinate
 from eomgen.symbolic.expression import Expression
@@ -15,12 +16,13 @@ from eomgen.symbolic.expression import Expression
 
 @dataclass(frozen=True)
 class Contact:
-    """A constraint, the joint of a body on a path, or a joint with dry friction.
+    """A constraint, the joint of a body on a path, or what has dry friction: a joint, a force such as a brake.
 
     Args:
         name: of the constraint, or of the body, of a joint of several variables arm_angle.
-        kind: as the model file says it: "support", "link", "path", "revolute".
+        kind: as the model file says it: "support", "link", "path", "revolute", "clutch".
         of_joint: the contact of a body with its path, or its joint with friction.
+        of_force: a force of dry friction.
         body, variable: of a joint the body, and the number of the variable along which its friction acts.
         pulls: a wire or string, which goes slack; anything else opens.
         unilateral: it can end.
@@ -35,6 +37,7 @@ class Contact:
     unilateral: bool
     friction: Resistance | JointFriction | None
     of_joint: bool = False
+    of_force: bool = False
     body: str = ""
     variable: int = 0
     pulls: bool = False
@@ -44,13 +47,17 @@ class Contact:
 
     @property
     def words(self) -> str:
+        if self.of_force:
+            return f"the {self.kind} '{self.name}'"
         if isinstance(self.friction, JointFriction):
             return f"the joint '{self.name}'"
         return f"the body '{self.name}'" if self.of_joint else f"the {self.kind} '{self.name}'"
 
     @property
     def declared_at(self) -> str:
-        """Path of its declaration: constraints.wall, bodies.bead.joint."""
+        """Path of its declaration: constraints.wall, bodies.bead.joint, forces.brake."""
+        if self.of_force:
+            return f"forces.{self.name}"
         return f"bodies.{self.body}.joint" if self.of_joint else f"constraints.{self.name}"
 
     @property
@@ -60,7 +67,7 @@ class Contact:
 
     @property
     def size(self) -> Expression | None:
-        """The dry friction that does not depend on a force: a torque or force of a joint."""
+        """The dry friction that does not depend on a reaction: a torque or force."""
         return self.friction.size if isinstance(self.friction, JointFriction) else None
 
     @property
@@ -86,21 +93,23 @@ class Connections:
     coordinates: Table[Coordinate]
     bodies: Table[Body]
     constraints: Table[Constraint]
+    forces: Table[Force]
 
     @cached_property
     def contacts(self) -> tuple[Contact, ...]:
-        """Every constraint that can end or has friction, bodies with friction on their paths, joints that can stick."""
+        """Every constraint that can end or has friction, bodies on rough paths, joints and forces that can stick."""
         laws = ((name, getattr(body.joint, "friction", None)) for name, body in self.bodies.items())
         on_paths = (self._on_path(name, law) for name, law in laws if isinstance(law, Resistance))
-        return (*self._touching(), *on_paths, *self._in_joints())
+        return (*self._touching(), *on_paths, *self._in_joints(), *self._of_forces())
 
     @property
     def rough_contacts(self) -> tuple[Contact, ...]:
-        """Every constraint and joint with dry friction, and every body on a path of which a piece has it."""
+        """All that has dry friction, and every body on a path of which a piece has it."""
         pieces = (
             self._on_path(name, piece.friction) for name, body in self.bodies.items() for piece in body.path_pieces
         )
-        return tuple(contact for contact in (*self._touching(), *pieces, *self._in_joints()) if contact.dry)
+        found = (*self._touching(), *pieces, *self._in_joints(), *self._of_forces())
+        return tuple(contact for contact in found if contact.dry)
 
     def _in_joints(self) -> Iterator[Contact]:
         """Joints with dry friction that can stick: smooth friction never holds, and what is driven moves as given."""
@@ -115,6 +124,12 @@ class Connections:
                     name = joint.named_contact(body, field)
                     loaded = law.coulomb is not None
                     yield Contact(name, joint.kind, False, law, of_joint=True, body=body, variable=k, round=loaded)
+
+    def _of_forces(self) -> Iterator[Contact]:
+        """Forces of dry friction that can stick."""
+        for name, force in self.forces.items():
+            if force.friction is not None and force.friction.smooth is None:
+                yield Contact(name, force.kind, False, force.friction, of_force=True)
 
     def _touching(self) -> Iterator[Contact]:
         for name, constraint in self.constraints.items():

@@ -230,11 +230,11 @@ FrictionLaw = Annotated[Resistance, PartRule(Resistance)]
 
 
 # -------- friction of joints ----------------------------------------------------------------------------------
-# Dry friction along a joint's variable: of a constant size, or of the joint's own reaction force R.
+# Dry friction along a joint's variable: of a given size, or of the joint's own reaction force R.
 
 
-TorqueSize = Annotated[Expression, FormulaRule("N*m", "nonnegative")]
-ForceSize = Annotated[Expression, FormulaRule("N", "nonnegative")]
+TorqueSize = Annotated[Expression, FormulaRule("N*m", "nonnegative", MOTION)]
+ForceSize = Annotated[Expression, FormulaRule("N", "nonnegative", MOTION)]
 TurningSpeed = Annotated[Expression, FormulaRule("rad/s", "positive")]
 SlidingSpeed = Annotated[Expression, FormulaRule("m/s", "positive")]
 
@@ -244,23 +244,24 @@ class JointFriction(Part):
     """Dry friction along a variable of a joint.
 
     While it moves, - T sign(s'), or - mu |R| sign(s'), times r in a hinge; at rest what holds it, up to the same with
-    `static`. Smooth: - T tanh(s'/v), which never rests.
+    `static`. Smooth: - T tanh(s'/v), which never rests. T may be any formula of the motion, of t and of inputs; where
+    that falls below 0 it is 0.
     """
 
     title: ClassVar[str] = "friction"
-    amount: ClassVar[str]  # the field of a constant size
+    amount: ClassVar[str]  # the field of a given size
     static: Formula | None = None
     smooth: Formula | None = None
 
     @property
     def size(self) -> Expression | None:
-        """The constant torque or force while it moves; None where it depends on the load."""
+        """The given torque or force while it moves; None where it depends on the load."""
         found: Expression | None = getattr(self, self.amount)
         return found
 
     @property
     def coulomb(self) -> Expression | None:
-        """The friction of a unit of the joint's force, of a hinge mu r; None where its size is constant."""
+        """The friction of a unit of the joint's force, of a hinge mu r; None where its size is given."""
         return self._of_load(self._coefficient)
 
     @property
@@ -302,7 +303,7 @@ class JointFriction(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class TurnFriction(JointFriction):
-    """Dry friction of constant torque against a turn.
+    """Dry friction of a given torque against a turn.
 
     Args:
         torque: T while it turns [N m].
@@ -318,7 +319,7 @@ class TurnFriction(JointFriction):
 
 @dataclass(frozen=True, kw_only=True)
 class HingeFriction(TurnFriction):
-    """Dry friction of a hinge: of constant torque, or mu r |R| of the force R that it carries.
+    """Dry friction of a hinge: of a given torque, or mu r |R| of the force R that it carries.
 
     Args:
         torque: T while it turns [N m].
@@ -331,13 +332,15 @@ class HingeFriction(TurnFriction):
     torque: TorqueSize | None = None
     coefficient: Friction | None = None
     radius: Length | None = None
-    static: Annotated[Expression, FormulaRule(None, "nonnegative", like=("torque", "coefficient"))] | None = None
+    static: (
+        Annotated[Expression, FormulaRule(None, "nonnegative", like=("torque", "coefficient"), scope=MOTION)] | None
+    ) = None
     smooth: TurningSpeed | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
 class PushFriction(JointFriction):
-    """Dry friction of constant force against a slide.
+    """Dry friction of a given force against a slide.
 
     Args:
         force: F while it slides [N].
@@ -353,7 +356,7 @@ class PushFriction(JointFriction):
 
 @dataclass(frozen=True, kw_only=True)
 class SlideFriction(PushFriction):
-    """Dry friction of a slide: of constant force, or mu |N| of the force N across it.
+    """Dry friction of a slide: of a given force, or mu |N| of the force N across it.
 
     Args:
         force: F while it slides [N].
@@ -364,7 +367,9 @@ class SlideFriction(PushFriction):
 
     force: ForceSize | None = None
     coefficient: Friction | None = None
-    static: Annotated[Expression, FormulaRule(None, "nonnegative", like=("force", "coefficient"))] | None = None
+    static: (
+        Annotated[Expression, FormulaRule(None, "nonnegative", like=("force", "coefficient"), scope=MOTION)] | None
+    ) = None
     smooth: SlidingSpeed | None = None
 
 

@@ -196,7 +196,7 @@ def constraints(catalog: Catalog) -> Iterator[Diagnostic]:
             yield from part.diagnostics(path, catalog)
             if table == "constraints":
                 yield from _on_itself(catalog, path, part)
-            friction = getattr(part, "friction", None)
+            friction = getattr(part, "friction", None) if table == "constraints" else None
             if friction is not None:
                 yield from diagnostics_of_one(catalog, (*path, "friction"), friction, ("coulomb", "viscous"))
 

@@ -177,7 +177,7 @@ class Declared(InNumbers):
         f, k, c, rest, now = self.at((*map(scope.value, (push.push, push.stiffness, push.damping, push.rest)), s))
         moves = c or push.friction is not None
         rate = way_through(self.system, self.state).rates((s,))[0] if moves else 0
-        return s, f - c * rate - k * (now - rest) + _dry_friction(self.system, self.state, (link, variable), rate)
+        return s, f - c * rate - k * (now - rest) + _in_its_joint(self.system, self.state, (link, variable), rate)
 
     # -- loads on bodies -------------------------------------------------------------------------------------
 
@@ -240,6 +240,41 @@ class Declared(InNumbers):
 
     def rope(self, stops: tuple[Any, ...], slack: Any) -> RopeInNumbers:
         return RopeInNumbers(self.system, self.state, stops, slack)
+
+    def spin(self, body: str) -> Vector:
+        link = self.motion.link(body)
+        return self.vector(link.pose.R @ link.twist.w)
+
+    def axis(self, body: str) -> Vector:
+        if self.scene.plane:
+            return self.vector((0, 0, 1))
+        link = self.motion.link(body)
+        (w,) = (w for w, _ in link.S if not all(map(is_zero, w)))
+        return direction_at(self.vector(link.pose.R @ w))
+
+    def in_joint(self, body: str) -> tuple[Any, tuple[Act, ...]]:
+        link = self.motion.link(body)
+        parent = None if link.parent < 0 else self.motion.links[link.parent].name
+        w, v = (self.vector(link.pose.R @ x) for x in link.S[0])
+        unit = (w if any(w) else v) * (1 / ((w if any(w) else v) @ (w if any(w) else v)))
+        if any(w):
+            acts = (Act(body, couple=unit), Act(parent, couple=-unit))
+        else:
+            at = self.scene.position((body, link.point))
+            acts = Act(body, at, tuple(unit)), self._opposite(parent, at, unit)
+        return _joint_motion(self.system, self.state, link, 0)[1], acts
+
+    def _opposite(self, parent: str | None, at: Vector, force: Vector) -> Act:
+        """The opposite of a force on the material of the parent that is there."""
+        if parent is None:
+            return Act(None, (), ())
+        origin = self.scene.position((parent, Vector.ZERO))
+        return Act(parent, origin, tuple(-force), -(self.vector(at) - self.vector(origin)).cross(force))
+
+    def rubs(self, force: Any, rate: Any) -> Any:
+        forces = self.system.scope.model.forces
+        (name,) = (name for name, each in forces.items() if each is force)
+        return dry_friction(self.system, self.state, force.friction, name, rate)
 
     def direction(self, v: Vector) -> Vector:
         return direction_at(v)
@@ -304,7 +339,7 @@ def _in_joint(system: System, state: State, effort: JointEffort) -> str:
     declared = tuple(map(scope.value, (law.push, law.damping, law.stiffness, law.rest)))
     drive, c, k, rest, stated, V = evaluate((*declared, effort.effort, effort.potential), state, fifty_digits())
     s, rate = _joint_motion(system, state, link, effort.variable)
-    stretch, drive = s - rest, drive + _dry_friction(system, state, (link, effort.variable), rate)
+    stretch, drive = s - rest, drive + _in_its_joint(system, state, (link, effort.variable), rate)
     if _turns(link, effort.variable) and k != 0:
         stretch = _by_whole_turns(stretch, (drive - c * rate - stated) / k)
     left, energy = stated - (drive - c * rate - k * stretch), k * stretch * stretch / 2
@@ -313,17 +348,23 @@ def _in_joint(system: System, state: State, effort: JointEffort) -> str:
     return _energy(V, energy)
 
 
-def _dry_friction(system: System, state: State, acting: tuple[BodyLink, int], rate: Any) -> Any:
-    """- T sign(s'), in a phase of the sense of its mode, or - T tanh(s'/v): of constant size, as it is declared."""
+def _in_its_joint(system: System, state: State, acting: tuple[BodyLink, int], rate: Any) -> Any:
+    """The dry friction of a given size along a variable of a joint; 0 without."""
     link, variable = acting
     law = link.joint.pushes()[variable].friction
     if law is None or law.size is None:
         return 0
+    (name,) = (link.joint.named_contact(link.name, field) for _, field, each in link.joint.frictions if each is law)
+    return dry_friction(system, state, law, name, rate)
+
+
+def dry_friction(system: System, state: State, law: Any, name: str, rate: Any) -> Any:
+    """- T sign(s'), in a phase of the sense of its mode, or - T tanh(s'/v): T as it is declared, never below 0."""
     given = (law.size, *(() if law.smooth is None else (law.smooth,)))
     size, *speed = evaluate(tuple(map(system.scope.value, given)), state, fifty_digits())
+    size = max(size, 0 * size)
     if speed:
         return -size * fifty_digits().functions["tanh"](rate / speed[0])
-    (name,) = (link.joint.named_contact(link.name, field) for _, field, each in link.joint.frictions if each is law)
     sense = system.modes.get(name, ContactMode()).sense
     return -size * ((rate > 0) - (rate < 0) if sense is None else sense)
 

@@ -321,8 +321,9 @@ class Trials:
 
     @property
     def _of_joints(self) -> list[tuple[str, Scalar, Scalar]]:
-        """(name, friction, rate) of every joint with friction of constant size that does not stick."""
-        system, found = self.equations.system, []
+        """(name, friction, rate) of every joint and force with friction of a given size that does not stick."""
+        system = self.equations.system
+        found = [(each.name, each.friction, each.slip) for each in system.loads.applied if not is_zero(each.friction)]
         for effort in system.loads.efforts:
             link = system.motion.link(effort.body)
             names = [link.joint.named_contact(link.name, x) for k, x, _ in link.joint.frictions if k == effort.variable]

@@ -15,7 +15,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Rank, Row
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, WellPosed, with_accelerations
 from eomgen.mechanics.free_bodies import Indeterminate, Reactions
-from eomgen.mechanics.kinematics import ContactMode
+from eomgen.mechanics.kinematics import ContactMode, SystemScene
 from eomgen.model import Contact, Model, Table
 from eomgen.simulation.event_location import Measured
 from eomgen.simulation.reaction_columns import ReactionColumns
@@ -186,7 +186,10 @@ class ContactEvents:
         v, scope = sliding_velocity(self.system, contact), self.system.scope
         found += [Signal(name, "slide", v), Signal(name, "slide'", scope.with_accelerations((v,))[0])]
         if self.mode(contact).sense == 0:
-            found += [Signal(name, "grip", scope.value(contact.grip)), Signal(name, "hold", *self._holding(name))]
+            found += [
+                Signal(name, "grip", ContactMode.size_of(scope, contact.grip)),
+                Signal(name, "hold", *self._holding(name)),
+            ]
         return found
 
     def _holding(self, name: str) -> tuple[Scalar, str]:
@@ -236,8 +239,8 @@ def stopped_below(contact: Contact) -> Fraction | int:
 
 def sliding_velocity(system: System, contact: Contact) -> Scalar:
     """Sliding velocity of a closed contact with friction, along its tangent [m/s]."""
-    if contact.of_joint:
-        return system.motion.link(contact.body).s_rate[contact.variable]
+    if contact.of_joint or contact.of_force:
+        return SystemScene(system.motion).slip(contact)
     return next(r.sliding for r in system.constraints.rows if r.constraint == contact.name and r.tangent)
 
 

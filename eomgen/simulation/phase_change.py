@@ -19,7 +19,7 @@ from eomgen.mechanics.free_bodies import Indeterminate
 from eomgen.mechanics.kinematics import ContactMode
 from eomgen.mechanics.start import Start
 from eomgen.model import Contact, JointFriction, Model, Table
-from eomgen.simulation.contacts import Configuration, bounds_of, on_pieces, stopped_below
+from eomgen.simulation.contacts import Configuration, bounds_of, on_pieces, sliding_velocity, stopped_below
 from eomgen.simulation.event_location import Crossing
 from eomgen.simulation.phase_model import PhaseModel, Values, size_of_places, smallest_speed
 from eomgen.simulation.phase_models import OPEN, PhaseModels
@@ -396,10 +396,11 @@ def by_gauss(
         return []
     modes = {**near.modes, **{c.name: ContactMode(sense=1) for c in resting}}
     phase = phase_models.of(replace(near, modes=Table(modes)))
-    system, value = phase.system, phase.system.scope.value
-    rates = [system.motion.link(c.body).s_rate[c.variable] for c in resting]
+    system = phase.system
+    rates = [sliding_velocity(system, c) for c in resting]
     u, n, k = system.symbols.u, len(resting), len(phase.equations.J)
-    sizes = tuple(value(x) for c in resting for x in (c.size, c.grip))
+    declared = [x for c in resting for x in (c.size, c.grip) if x is not None]
+    sizes = tuple(ContactMode.size_of(system.scope, x) for x in declared)
     rows = (*phase.equations.M, *phase.equations.J, *(gradient(rate, u) for rate in rates))
     scalars = (*sizes, *system.scope.with_accelerations(tuple(rates)), *(x for row in rows for x in row))
     found = phase.functions.evaluated(np.array([t]), phase.state(values)[None, :], scalars)[0]

@@ -202,21 +202,25 @@ class Constraints:
                 row = _row(motion, name, number, constraint_row, used=label in (used or {}))
                 row = replace(row, eliminates=(used or {}).get(label, ""))
                 rows.append(_with_friction(scene, constraint, row, mode))
-        held = [c for c in motion.scope.model.rough_contacts if c.of_joint and c.name in (modes or {})]
+        rough = [c for c in motion.scope.model.rough_contacts if c.of_joint or c.of_force]
+        held = [c for c in rough if c.name in (modes or {})]
         stuck = [contact for contact in held if (modes or {})[contact.name].sense == 0]
         rows += [_row(motion, contact.name, 1, _held_in_joint(motion, contact), used=False) for contact in stuck]
         return Constraints(motion, tuple(rows))
 
 
 def _held_in_joint(motion: Motion, contact: Contact) -> ConstraintRow:
-    """The row that keeps a body where it is on its path, or in its joint, while that sticks: no velocity along it."""
+    """The row of what sticks on a path, in a joint, in a force of dry friction: no velocity along it."""
+    if contact.of_force:
+        pushes = motion.scope.model.forces[contact.name].pushes(SystemScene(motion, f"forces.{contact.name}"))
+        return ConstraintRow(pushes, None, component="friction", material=True)
     link = motion.link(contact.body)
     force, couple = (link.pose.R @ x for x in pushed_along(link, contact.variable, 1))
     places = (
         (link.name, link.point),
         (None if link.parent == GROUND else motion.links[link.parent].name, link.local.p),
     )
-    pushes: tuple[Push, ...] = ()
+    pushes = ()
     if any(not is_zero(x) for x in force):
         pushes = tuple(PointForce(place, sign * force) for place, sign in zip(places, (1, -1), strict=True))
     else:
@@ -283,7 +287,7 @@ def _row(motion: Motion, name: str, number: int, row: ConstraintRow, *, used: bo
 
 def _dual(motion: Motion, row: ConstraintRow, pushes: tuple[Push, ...]) -> Scalar:
     """The velocity that is dual to pushes of a row."""
-    return _power(motion, _wrenches(motion, pushes), 0 if row.material else _slide(motion, pushes))
+    return motion.power(pushes, material=row.material)
 
 
 def _with_friction(scene: SystemScene, constraint: Any, row: Row, mode: ContactMode) -> Row:

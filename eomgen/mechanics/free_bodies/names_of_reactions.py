@@ -51,7 +51,13 @@ class NamedReaction:
 
 
 def _of_sliding_joints(balance: Balance, found: Container[str]) -> Iterator[NamedReaction]:
-    """The dry friction of constant size in joints: friction(rod), where it does not stick."""
+    """The dry friction of a given size in joints and forces: friction(rod), where it does not stick."""
+    model = balance.system.scope.model
+    for applied in balance.system.loads.applied:
+        law = model.forces[applied.name].friction
+        if law is not None and f"friction({applied.name})" not in found:
+            unit = COUPLE if law.amount == "torque" else FORCE
+            yield NamedReaction(f"friction({applied.name})", applied.name, unit, {}, applied.friction)
     for effort in balance.system.loads.efforts:
         link = balance.system.motion.link(effort.body)
         for k, field, law in link.joint.frictions:

@@ -7,14 +7,14 @@ Q_k = sum F . dp/dq_k - dV/dq_k, and wrenches on twists, Q = sum B^T W.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import field
+from dataclasses import field, replace
 from functools import cached_property
 
 from eomgen.errors import DerivationError, NotYet
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics.motion import BodyLink, Motion
 from eomgen.mechanics.kinematics.scene import ContactMode, ContactModes, SystemScene
-from eomgen.model import Couple, GeneralizedForce, Load, PointForce, SpreadLoad, UniformField
+from eomgen.model import Couple, GeneralizedForce, JointFriction, Load, PointForce, Push, SpreadLoad, UniformField
 from eomgen.symbolic.expression import (
     Fraction,
     Node,
@@ -41,6 +41,7 @@ class Applied:
         potential: V [J], or None where it has none.
         placeless: it is an energy of coordinates alone, which acts at no place.
         spread: what is spread along lines, of which `loads` holds the resultants.
+        friction: the dry friction in it along the rate `slip`; 0 of others, and while it sticks.
     """
 
     name: str
@@ -48,6 +49,8 @@ class Applied:
     potential: Scalar | None
     placeless: bool
     spread: tuple[SpreadLoad, ...] = ()
+    friction: Scalar = 0
+    slip: Scalar = 0
 
     @property
     def is_field(self) -> bool:
@@ -254,10 +257,25 @@ class Loads:
                     fix="declare it by forces that are: see eomgen schema",
                 )
             loads, spread = tuple(force.loads(scene)), tuple(force.spread(scene))
-            applied.append(Applied(name, loads, force.potential(scene), force.placeless, spread))
+            one = Applied(name, loads, force.potential(scene), force.placeless, spread)
+            if force.friction is not None:
+                one = _rubbing(motion, one, force.friction, force.pushes(scene), modes or {})
+            applied.append(one)
         efforts = [effort for link in motion.links for effort in _joint_efforts(motion, link, modes or {})]
         _refuse_accelerations(motion, applied, efforts)
         return Loads(motion, tuple(applied), tuple(efforts), begun)
+
+
+def _rubbing(
+    motion: Motion, applied: Applied, law: JointFriction, pushes: tuple[Push, ...], modes: ContactModes
+) -> Applied:
+    """A force with its dry friction, - F sign(v) along its rate of slipping v, of which the pushes are a unit."""
+    assert law.size is not None, "a force that rubs has a size"
+    scope, slip = motion.scope, motion.power(pushes)
+    factor = modes.get(applied.name, ContactMode()).joint_factor(law, scope.value, slip)
+    friction = ContactMode.size_of(scope, law.size) * factor
+    rubs = () if is_zero(friction) else tuple(push.times(friction) for push in pushes)
+    return replace(applied, loads=(*applied.loads, *rubs), friction=friction, slip=slip)
 
 
 def _refuse_accelerations(motion: Motion, applied: list[Applied], efforts: list[JointEffort]) -> None:
@@ -301,7 +319,7 @@ def _joint_efforts(motion: Motion, link: BodyLink, modes: ContactModes) -> list[
             continue
         acting, damping, stiffness, rest = map(scope.value, given)
         factor = 0 if law is None else modes.get(name, ContactMode()).joint_factor(law, scope.value, link.s_rate[k])
-        friction = 0 if size is None else scope.value(size) * factor
+        friction = 0 if size is None else ContactMode.size_of(scope, size) * factor
         drive = acting - damping * link.s_rate[k] + friction
         if motion.moves((*link.before.p, *link.point)):
             raise DerivationError(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
@@ -257,6 +257,16 @@ class Motion:
     def slide_power(self, push: PointForce) -> Scalar:
         """Power of a push on a point that moves in its body: F . R r'."""
         return self.in_ground_axes(push.force, push.axes) @ self.slide(push.place)
+
+    def power(self, pushes: Iterable[PointForce | Couple], *, material: bool = True) -> Scalar:
+        """Power of pushes, that on points which move in their bodies among it unless they act on the material."""
+        total: Scalar = 0
+        for push in pushes:
+            found = self.body_wrench(push)
+            total = total if found is None else total + self.link(found[0]).twist.power(found[1])
+            if not material and isinstance(push, PointForce):
+                total = total + self.slide_power(push)
+        return total
 
     def is_particle(self, link: BodyLink) -> bool:
         """A point mass that its joint does not turn."""

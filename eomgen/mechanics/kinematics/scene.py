@@ -10,10 +10,11 @@ from typing import Any
 from eomgen.errors import DerivationError, ModelError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics.motion import GROUND, BodyLink, Motion
-from eomgen.mechanics.kinematics.symbols import parameters_of_zero, primitive
+from eomgen.mechanics.kinematics.symbols import Scope, parameters_of_zero, primitive
 from eomgen.model import (
     BodyPoint,
     ConstraintRow,
+    Contact,
     JointFriction,
     Resistance,
     Stop,
@@ -211,6 +212,12 @@ class SystemScene:
         arm = R_parent @ (slid - seat)
         return link.s[variable], R @ force, R @ couple, (body, link.point), (name, seat), arm
 
+    def slip(self, contact: Contact) -> Scalar:
+        """Rate along which a joint or a force rubs: s' of a joint's variable, of a force the power of its unit."""
+        if contact.of_force:
+            return self.motion.power(self.motion.scope.model.forces[contact.name].pushes(self))
+        return self.motion.link(contact.body).s_rate[contact.variable]
+
     def masses(self, bodies: tuple[str, ...] | None) -> tuple[tuple[BodyPoint, Scalar], ...]:
         """(mass centre, mass) of the named bodies, or of all, that have mass."""
         names = [link.name for link in self.motion.links] if bodies is None else bodies
@@ -329,11 +336,41 @@ class ContactMode:
         sense = function("sign", sliding) if self.sense is None else self.sense
         return -self.push * value(law.coulomb) * sense
 
+    @staticmethod
+    def size_of(scope: Scope, size: Expression) -> Scalar:
+        """The value of a declared size of dry friction: max(0, T) where T may fall below 0 in the motion."""
+        return _not_below_zero(scope, scope.value(size))
+
     def joint_factor(self, law: JointFriction, value: Callable[[Any], Scalar], rate: Scalar) -> Scalar:
         """- sign(s') of what is dry in a joint, smooth - tanh(s'/v); 0 while it sticks."""
         if law.smooth is not None:
             return -function("tanh", over(rate, value(law.smooth)))
         return -function("sign", rate) if self.sense is None else -self.sense
+
+
+def _not_below_zero(scope: Scope, x: Scalar) -> Scalar:
+    """max(0, x), factors that are never negative before it; x where it is never negative."""
+    if _never_below_zero(scope, x):
+        return x
+    if type(x) is Node and x.op == "mul":
+        kept, other = sorted(x.args, key=lambda arg: not _never_below_zero(scope, arg))
+        if _never_below_zero(scope, kept):
+            return kept * _not_below_zero(scope, other)
+    return function("max", 0, x)
+
+
+def _never_below_zero(scope: Scope, x: Scalar) -> bool:
+    """True if its form shows that a formula is never negative; parameters have the sign of their value, or are not."""
+    if type(x) is not Node:
+        return x >= 0
+    if x.op == "symbol":
+        return x in scope.symbols.parameters.values() and scope.model.exact_parameters().get(x.name, 0) >= 0
+    if x.op in ("abs", "exp", "sqrt") or (x.op == "pow" and type(x.args[1]) is int and x.args[1] % 2 == 0):
+        return True
+    if x.op == "max":
+        return any(_never_below_zero(scope, arg) for arg in x.args)
+    same_sign = ("add", "mul", "div", "min", "tanh", "pow")
+    return x.op in same_sign and all(_never_below_zero(scope, arg) for arg in x.args)
 
 
 ContactModes = Mapping[str, ContactMode]

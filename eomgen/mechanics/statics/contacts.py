@@ -13,7 +13,7 @@ from eomgen.frozen import dataclass, recalled
 from eomgen.mechanics.constraints import Row
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, exact_accelerations
 from eomgen.mechanics.free_bodies import Reactions, SystemFriction, equations_of_motion
-from eomgen.mechanics.kinematics import ContactMode, ContactModes
+from eomgen.mechanics.kinematics import ContactMode, ContactModes, SystemScene
 from eomgen.mechanics.start import Start
 from eomgen.model import Contact, Model
 from eomgen.symbolic.expression import Scalar, State, symbols_of
@@ -265,7 +265,7 @@ class _StartNumbers:
         sliding: list[tuple[str, Scalar]] = [(name, v) for name, _, v in SystemFriction(system).named if name in rough]
         for contact in self.model.contacts:
             if contact.size is not None:
-                sliding.append((contact.name, system.motion.link(contact.body).s_rate[contact.variable]))
+                sliding.append((contact.name, SystemScene(system.motion).slip(contact)))
         values = evaluate(tuple(v for _, v in sliding), state, fifty_digits())
         return {name for (name, _), v in zip(sliding, values, strict=True) if abs(v) <= tolerances.CARRIED}
 

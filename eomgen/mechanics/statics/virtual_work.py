@@ -19,7 +19,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Rank
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies import Effect, Indeterminate, NamedReaction, Reactions, Structure, VelocityPlan
-from eomgen.mechanics.kinematics import SystemScene
+from eomgen.mechanics.kinematics import ContactMode, SystemScene
 from eomgen.model import (
     FUNCTIONS,
     Contact,
@@ -378,7 +378,7 @@ class StaticReactions:
         if along is None or N is None or contact.grip is None:
             return []
         pressed = simplest(N, Work.ANSWER, self.system.scope.positive)
-        most = self.system.scope.value(contact.grip) * function("abs", pressed)
+        most = ContactMode.size_of(self.system.scope, contact.grip) * function("abs", pressed)
         return [RestCondition(contact.name, "holds", most - function("abs", along))]
 
     @property
@@ -562,21 +562,21 @@ def _conditions(system: System) -> Iterator[StickCondition]:
         reactions = Reactions.of(system, still)
     except DerivationError:  # what acts at no place has no reactions
         return
-    value, positive = system.scope.value, system.scope.positive
+    positive = system.scope.positive
     for contact in rough:
         try:
             F, N = _held(reactions, contact), _pressed(reactions, contact)
         except DerivationError:  # it has no single value
             continue
         assert contact.grip is not None, "what is rough can stick"
-        most = value(contact.grip)
+        most = ContactMode.size_of(system.scope, contact.grip)
         ratio = simplest(F if N is None else over(F, N), Work.ANSWER, positive)
         yield StickCondition(contact.name, ratio, most, most if N is None else most * function("abs", N))
 
 
 def _held(reactions: Reactions, contact: Contact) -> Scalar:
     """The friction that holds a contact or joint; on a surface its magnitude."""
-    if contact.of_joint and contact.kind != "path":
+    if isinstance(contact.friction, JointFriction):
         return reactions.friction_of_joint(contact.name)
     return _magnitude([reactions.friction(contact.name, along) for along in ("ts" if contact.surface else "t")])
 

@@ -6,6 +6,7 @@ Adding one is one class, next to its kin or in a file of its own, and one name h
 from eomgen.model.forces.applied import CoupleForce, Generalized, PointForce
 from eomgen.model.forces.base import Force
 from eomgen.model.forces.bumper import Bumper
+from eomgen.model.forces.dry import Belt, Brake, Clutch
 from eomgen.model.forces.elements import Between, Damper, Spring
 from eomgen.model.forces.energies import Kinetic, Potential
 from eomgen.model.forces.gear_mesh import GearMesh
@@ -27,6 +28,9 @@ ALL = (
     Bumper,
     Rope,
     GearMesh,
+    Clutch,
+    Brake,
+    Belt,
     MassFlow,
     Potential,
     Kinetic,
@@ -35,8 +39,11 @@ ALL = (
 
 __all__ = [
     "ALL",
+    "Belt",
     "Between",
+    "Brake",
     "Bumper",
+    "Clutch",
     "CoupleForce",
     "Damper",
     "Distributed",

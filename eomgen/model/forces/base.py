@@ -4,13 +4,16 @@ A force is declared by fields that say where it acts and by which law. `loads` g
 equations are derived; `acts` gives it in numbers at a state, by which they are proven.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, ClassVar, Protocol
 
 from eomgen.frozen import dataclass
 from eomgen.model.catalog import Catalog
 from eomgen.model.diagnostics import Diagnostic
-from eomgen.model.forces.load import Load, LoadContext, SpreadLoad
+from eomgen.model.forces.load import Load, LoadContext, Push, SpreadLoad
+from eomgen.model.kinds import JointFriction
 from eomgen.model.part import Part
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression import Expression, Scalar, Vector
@@ -39,6 +42,10 @@ class Act:
     force: tuple[Any, ...] = ()
     couple: Vector = Vector.ZERO
     kinetic: Scalar | None = None
+
+    def times(self, k: Any) -> Act:
+        """So many times the action."""
+        return Act(self.body, self.moving, tuple(k * x for x in self.force), k * self.couple, self.kinetic)
 
 
 class StretchedRope(Protocol):
@@ -97,6 +104,18 @@ class ForceTrial(Protocol):
 
     def rope(self, stops: tuple[Any, ...], slack: Any) -> StretchedRope:
         """A rope along points and wraps, `slack` its length without tension, or "start"."""
+
+    def spin(self, body: str) -> Vector:
+        """Angular velocity of a body [rad/s]."""
+
+    def axis(self, body: str) -> Vector:
+        """Unit vector along the axis about which the joint of a body turns; in the plane z."""
+
+    def in_joint(self, body: str) -> tuple[Any, tuple[Act, ...]]:
+        """(rate s' of a body's joint, the action of a unit along s on the body and on what carries it)."""
+
+    def rubs(self, force: Force, rate: Any) -> Any:
+        """Dry friction of a force by its rate of slipping: - F sign(v), in a phase of the sense of its mode."""
 
     def direction(self, v: Vector) -> Vector:
         """v over its length.
@@ -233,6 +252,20 @@ class Force(Part):
     elastic: ClassVar[bool] = False  # a spring
     tight: ClassVar[bool] = False  # one tension along its way
     placeless: ClassVar[bool] = False  # an energy of coordinates, without a point of application
+
+    @property
+    def friction(self) -> JointFriction | None:
+        """Law of what sticks and slips as a whole along one rate; None of others."""
+        return None
+
+    def pushes(self, scene: LoadContext) -> tuple[Push, ...]:
+        """Forces and couples for a unit of its friction, whose power is the rate of slipping; () of others."""
+        return ()
+
+    @property
+    def drawn_at(self) -> tuple[str, str] | None:
+        """(its symbol, the body at whose joint that is drawn); None of what has none."""
+        return None
 
     def diagnostics(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
         """Diagnostics of fields that do not fit together; each field alone is checked by its rule."""

@@ -24,6 +24,9 @@ class PointForce:
     axes: str | None = None
     beyond: Vector | None = None
 
+    def times(self, k: Scalar) -> PointForce:
+        return PointForce(self.place, k * self.force, self.axes, self.beyond)
+
 
 @dataclass(frozen=True)
 class Couple:
@@ -38,6 +41,9 @@ class Couple:
     axes: str | None = None
     place: BodyPoint | None = None
     beyond: Vector | None = None
+
+    def times(self, k: Scalar) -> Couple:
+        return Couple(self.body, k * self.couple, self.axes, self.place, self.beyond)
 
 
 @dataclass(frozen=True)
