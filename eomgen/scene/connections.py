@@ -15,12 +15,14 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import GROUND, BodyLink, SystemScene
 from eomgen.model import (
+    Act,
     ArcForm,
     Couple,
     EllipsoidForm,
     LineForm,
     Meeting,
     PointForce,
+    Rubbing,
     Stop,
     Strand,
     unit,
@@ -174,6 +176,7 @@ def force_elements(system: System) -> list[Mark]:
         if strands := force.strands_at(SystemScene(motion, f"forces.{name}")):
             found += [*string_marks(strands, name), *_rims(system, strands), *_fastened(system, strands, name)]
         if element is None:
+            found += _rubbing(system, name, force.acts)
             continue
         for body in element.bodies[1:] if element.stiffness is not None else ():
             assert body is not None, "only the first may be the ground"
@@ -192,6 +195,17 @@ def force_elements(system: System) -> list[Mark]:
         elif element.pull is not None:
             found += _cylinder(system, a, b, [body for body, _ in places], name)
     return found
+
+
+def _rubbing(system: System, name: str, acts: Iterable[Act]) -> Iterator[Mark]:
+    """The shoes of a brake at its joint, the plates of a clutch at that of its second body."""
+    for act in acts:
+        if isinstance(act, Rubbing):
+            link = system.motion.link(act.joint or act.bodies[1])
+            w, v = link.S[0] if link.S else (Vector.ZERO, Vector.ZERO)
+            along = None if system.scope.model.space == "plane" and any(w) else w if any(w) else v
+            symbol = SymbolForm("shoes" if act.joint else "plates", link.point, along)
+            yield Mark(symbol, system.motion.index[link.name] + 1, "joint", name)
 
 
 def _cylinder(system: System, a: Vector, b: Vector, bodies: Sequence[str | None], of: str) -> list[Mark]:
@@ -250,7 +264,8 @@ def _members(system: System) -> list[Mark]:
 def string_marks(strands: Sequence[Strand], of: str) -> list[Mark]:
     """The straight pieces, the arcs on pulleys, and the pegs."""
     found = [Mark(LineForm(strand.ends), 0, "string", of) for strand in strands]
-    for one, other in pairwise(strands):
+    loop = strands[0].first.round and strands[0].first.place == strands[-1].second.place
+    for one, other in pairwise((*strands, strands[0]) if loop else strands):
         if one.second.round:
             found.append(Mark(_wrapped(one.second, one.d, other.d), 0, "string", of))
     stops = {id(stop): stop for strand in strands for stop in (strand.first, strand.second)}

@@ -123,6 +123,28 @@ EXAMPLES = {
             'bodies = ["lower", "upper"], ratio = 3, stiffness = "k", backlash = "w/90", efficiency = 1, smooth = "l"',
         ],
     },
+    "clutch": {
+        PLANE: [
+            'bodies = ["upper", "lower"], torque = "k + tau"',
+            'bodies = ["lower", "clock"], normal = "k*t^2", coefficient = "w", radius = "l", faces = 2, static = 3',
+            'bodies = ["upper", "lower"], torque = "k*l", smooth = "c"',
+        ],
+        SPACE: ['bodies = ["upper", "lower"], torque = "k*(2 + a)"'],
+    },
+    "brake": {
+        PLANE: [
+            'body = "lower", torque = "k*exp(z)"',
+            'body = "upper", normal = "k*(4 + tau)", coefficient = "c", radius = "l"',
+        ],
+        SPACE: ['body = "lower", torque = "k*(2 + tau)", static = 90'],
+    },
+    "belt": {
+        PLANE: [
+            'bodies = ["upper", "clock"], radii = ["l/9", 0.2], tension = "k", coefficient = "c", wrap = "w"',
+            'bodies = ["upper", "clock"], radii = [0.1, "l/7"], tension = "k*t", coefficient = "c", wrap = 2, '
+            "crossed = true, smooth = 2",
+        ],
+    },
     "mass_flow": {
         PLANE: [
             'point = "lower.P", velocity = ["k", "c*b\'"], axes = "lower", rate = "tau"',

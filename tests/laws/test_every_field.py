@@ -96,6 +96,21 @@ joint = { kind = "revolute", on = "one.end", angle = "b - a" }
 """
 ARMS_3 = ARMS.replace("AXIS", ", axis = [1, 1, 0]").replace("ZERO", ", 0")
 ARMS_2 = ARMS.replace("AXIS", "").replace("ZERO", "")
+WHEEL = """
+[coordinates.e]
+start = 0.1
+speed = 2
+[coordinates.x]
+start = 0.2
+speed = -1
+[bodies.wheel]
+mass = 1
+TENSOR
+joint = { kind = "revolute", at = [9, 8ZERO], angle = "e"AXIS }
+[bodies.block]
+mass = 1
+joint = { kind = "prismatic", axis = [1, 2ZERO], displacement = "x" }
+"""
 LEAKING = ARMS_2.replace('mass = "m", length = "l" }\npoints', 'mass = "m - c*t", length = "l" }\npoints')
 
 
@@ -212,6 +227,20 @@ acceleration = [0, -9.81]
         teeth="kind = 'gear_mesh'\nbodies = ['one', 'two']\nratio = -2\nstiffness = 'k'\ndamping = 'c'\n"
         "backlash = 0.1\nefficiency = 0.9\nsmooth = 0.2",
         rain="kind = 'mass_flow'\npoint = 'two.end'\nabsolute = ['u', \"-a'\"]",
+    ),
+    "dry": ARMS_2
+    + WHEEL.replace("AXIS", "").replace("ZERO", "").replace("TENSOR", "inertia = 1")
+    + all_forces(
+        lining="kind = 'clutch'\nbodies = ['one', 'two']\nnormal = 'u + k'\ncoefficient = 0.1\nradius = 'l'\nfaces = 2\n"
+        "static = 0.2",
+        pads="kind = 'brake'\nbody = 'block'\nforce = 'k*t'\nstatic = 99",
+        coupling="kind = 'clutch'\nbodies = ['one', 'two']\ntorque = 'k*t'\nsmooth = 0.5",
+        shoe="kind = 'brake'\nbody = 'two'\ntorque = 'k*t'\nstatic = 90",
+        shoes="kind = 'brake'\nbody = 'one'\nnormal = 'k*t'\ncoefficient = 0.2\nradius = 'l'\nfaces = 2\nsmooth = 1",
+        flat="kind = 'belt'\nbodies = ['one', 'wheel']\nradii = [0.1, 0.2]\ntension = 'k'\ncoefficient = 0.3\n"
+        "wrap = 3\ncrossed = true\nstatic = 0.4",
+        vee="kind = 'belt'\nbodies = ['one', 'wheel']\nradii = [0.1, 0.2]\ntension = 'k'\ncoefficient = 0.3\n"
+        "wrap = 3\nsmooth = 0.4",
     ),
     "pin": constraint("kind = 'pin'\npoints = ['plate.P']", free()),
     "support": constraint(
@@ -388,6 +417,13 @@ joint = { kind = "revolute", at = [1, 0, 0], angle = "f" }
         "kind = 'equation'\nrate = 'vx(plate.P) - 0.2*omega_z(plate) - 0.1*vy(plate.Q, drum)'", loose() + DRUM_3
     ),
     "motion": constraint("kind = 'motion'\ncoordinate = 'x'\nvalue = '0.4 + sin(t)'", loose(", speed = 1")),
+    "dry": ARMS_3.replace("axis = [1, 1, 0]", "axis = [0, 0, 2]")
+    + WHEEL.replace("AXIS", "").replace("ZERO", ", 0").replace("TENSOR", "inertia = [1, 1, 1]")
+    + all_forces(
+        flat="kind = 'belt'\nbodies = ['one', 'wheel']\nradii = [0.1, 0.2]\ntension = 'k'\ncoefficient = 0.3\n"
+        "wrap = 3\naxis = [0, 0, 3]",
+        lining="kind = 'clutch'\nbodies = ['one', 'two']\ntorque = 'u + k'",
+    ),
     "forces": ARMS_3
     + all_forces(
         weight="kind = 'gravity'\nacceleration = ['sin(t)', 0, -9.81]\nbodies = ['two']",
