@@ -256,7 +256,9 @@ class Declared(InNumbers):
         link = self.motion.link(body)
         parent = None if link.parent < 0 else self.motion.links[link.parent].name
         w, v = (self.vector(link.pose.R @ x) for x in link.S[0])
-        unit = (w if any(w) else v) * (1 / ((w if any(w) else v) @ (w if any(w) else v)))
+        along = w if any(w) else v
+        square: Any = along @ along
+        unit = (1 / square) * along
         if any(w):
             acts = (Act(body, couple=unit), Act(parent, couple=-unit))
         else:

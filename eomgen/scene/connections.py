@@ -15,14 +15,12 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import GROUND, BodyLink, SystemScene
 from eomgen.model import (
-    Act,
     ArcForm,
     Couple,
     EllipsoidForm,
     LineForm,
     Meeting,
     PointForce,
-    Rubbing,
     Stop,
     Strand,
     unit,
@@ -175,8 +173,9 @@ def force_elements(system: System) -> list[Mark]:
         element = force.element
         if strands := force.strands_at(SystemScene(motion, f"forces.{name}")):
             found += [*string_marks(strands, name), *_rims(system, strands), *_fastened(system, strands, name)]
+        if force.drawn_at is not None:
+            found.append(_rubbing(system, name, force.drawn_at))
         if element is None:
-            found += _rubbing(system, name, force.acts)
             continue
         for body in element.bodies[1:] if element.stiffness is not None else ():
             assert body is not None, "only the first may be the ground"
@@ -197,15 +196,13 @@ def force_elements(system: System) -> list[Mark]:
     return found
 
 
-def _rubbing(system: System, name: str, acts: Iterable[Act]) -> Iterator[Mark]:
-    """The shoes of a brake at its joint, the plates of a clutch at that of its second body."""
-    for act in acts:
-        if isinstance(act, Rubbing):
-            link = system.motion.link(act.joint or act.bodies[1])
-            w, v = link.S[0] if link.S else (Vector.ZERO, Vector.ZERO)
-            along = None if system.scope.model.space == "plane" and any(w) else w if any(w) else v
-            symbol = SymbolForm("shoes" if act.joint else "plates", link.point, along)
-            yield Mark(symbol, system.motion.index[link.name] + 1, "joint", name)
+def _rubbing(system: System, name: str, drawn_at: tuple[str, str]) -> Mark:
+    """The symbol of a brake or a clutch, at the joint of a body."""
+    symbol, body = drawn_at
+    link = system.motion.link(body)
+    w, v = link.S[0] if link.S else (Vector.ZERO, Vector.ZERO)
+    along = None if system.scope.model.space == "plane" and any(w) else w if any(w) else v
+    return Mark(SymbolForm(symbol, link.point, along), system.motion.index[body] + 1, "joint", name)
 
 
 def _cylinder(system: System, a: Vector, b: Vector, bodies: Sequence[str | None], of: str) -> list[Mark]:

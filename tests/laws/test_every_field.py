@@ -231,8 +231,8 @@ acceleration = [0, -9.81]
     "dry": ARMS_2
     + WHEEL.replace("AXIS", "").replace("ZERO", "").replace("TENSOR", "inertia = 1")
     + all_forces(
-        lining="kind = 'clutch'\nbodies = ['one', 'two']\nnormal = 'u + k'\ncoefficient = 0.1\nradius = 'l'\nfaces = 2\n"
-        "static = 0.2",
+        lining="kind = 'clutch'\nbodies = ['one', 'two']\nnormal = 'u + k'\ncoefficient = 0.1\nradius = 'l'\n"
+        "faces = 2\nstatic = 0.2",
         pads="kind = 'brake'\nbody = 'block'\nforce = 'k*t'\nstatic = 99",
         coupling="kind = 'clutch'\nbodies = ['one', 'two']\ntorque = 'k*t'\nsmooth = 0.5",
         shoe="kind = 'brake'\nbody = 'two'\ntorque = 'k*t'\nstatic = 90",

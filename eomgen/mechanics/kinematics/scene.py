@@ -362,7 +362,7 @@ def _not_below_zero(scope: Scope, x: Scalar) -> Scalar:
 def _never_below_zero(scope: Scope, x: Scalar) -> bool:
     """True if its form shows that a formula is never negative; parameters have the sign of their value, or are not."""
     if type(x) is not Node:
-        return x >= 0
+        return bool(x >= 0)
     if x.op == "symbol":
         return x in scope.symbols.parameters.values() and scope.model.exact_parameters().get(x.name, 0) >= 0
     if x.op in ("abs", "exp", "sqrt") or (x.op == "pow" and type(x.args[1]) is int and x.args[1] % 2 == 0):

@@ -74,7 +74,7 @@ class DryForce(Force):
         elif self.static is not None and self.smooth is not None:
             what = "smooth friction has no 'static': it never rests"
             yield Diagnostic((*path, "static"), what, "leave out one of the two", key=True)
-        bodies = getattr(self, "bodies", None) or ()
+        bodies: tuple[str, ...] = getattr(self, "bodies", None) or ()
         if len(bodies) == 2 and bodies[0] == bodies[1]:
             what = f"'{name}' rubs body '{bodies[0]}' on itself"
             yield Diagnostic((*path, "bodies", 1), what, "name two bodies")
