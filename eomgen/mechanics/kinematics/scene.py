@@ -355,7 +355,8 @@ def _not_below_zero(scope: Scope, x: Scalar) -> Scalar:
     if type(x) is Node and x.op == "mul":
         kept, other = sorted(x.args, key=lambda arg: not _never_below_zero(scope, arg))
         if _never_below_zero(scope, kept):
-            return kept * _not_below_zero(scope, other)
+            product: Scalar = kept * _not_below_zero(scope, other)
+            return product
     return function("max", 0, x)
 
 
