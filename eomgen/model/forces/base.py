@@ -44,7 +44,7 @@ class Act:
     kinetic: Scalar | None = None
 
     def times(self, k: Any) -> Act:
-        """So many times the action."""
+        """The action multiplied by a number."""
         return Act(self.body, self.moving, tuple(k * x for x in self.force), k * self.couple, self.kinetic)
 
 

@@ -294,7 +294,7 @@ class Belt(DryForce):
 
     @property
     def _ways(self) -> tuple[tuple[Wrap, ...], ...]:
-        """From the first pulley to the second, and back."""
+        """Ways from the first pulley to the second, and back."""
         (first, second), (r_1, r_2) = self.bodies, self.radii
         one = Wrap(body=first, radius=r_1, turn="cw", axis=self.axis)
         other = Wrap(body=second, radius=r_2, turn="ccw" if self.crossed else "cw", axis=self.axis)
