@@ -379,7 +379,7 @@ class StaticReactions:
             return []
         pressed = simplest(N, Work.ANSWER, self.system.scope.positive)
         most = ContactMode.size_of(self.system.scope, contact.grip) * function("abs", pressed)
-        return [RestCondition(contact.name, "holds", most - function("abs", along))]
+        return [RestCondition(contact.name, "holds", most - function("abs", along), contact.words)]
 
     @property
     def loads(self) -> tuple[Acting, ...]:
@@ -458,13 +458,15 @@ class RestCondition:
 
     Args:
         constraint: the contact, or the body on a path.
-        kind: "pushes", "pulls", "sticks" or, of a joint, "holds".
+        kind: "pushes", "pulls", "sticks" or, of a joint or force, "holds".
         margin: it is not negative where the condition holds [N].
+        words: of what holds: the joint 'arm', the brake 'shoe'.
     """
 
     constraint: str
     kind: str
     margin: Scalar
+    words: str = ""
 
     @property
     def broken(self) -> str:
@@ -473,7 +475,7 @@ class RestCondition:
             "pushes": f"contact '{self.constraint}' would have to pull",
             "pulls": f"'{self.constraint}' would have to push",
             "sticks": f"contact '{self.constraint}' slides: it would need more friction than mu N",
-            "holds": f"the joint '{self.constraint}' slides: it would need more friction than it can have",
+            "holds": f"{self.words} slides: it would need more friction than it can have",
         }[self.kind]
 
 

@@ -88,8 +88,8 @@ class DryForce(Force):
 
 
 def _product(*factors: Expression | None) -> Expression:
-    """mu*N*r*n of what is given."""
-    return as_expression("*".join(f"({x.text})" for x in factors if x is not None))
+    """mu*N*r*n of what is given; 0 of nothing."""
+    return as_expression("*".join(f"({x.text})" for x in factors if x is not None) or 0)
 
 
 # -------- clutch ----------------------------------------------------------------------------------------------
