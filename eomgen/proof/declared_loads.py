@@ -273,10 +273,11 @@ class Declared(InNumbers):
         origin = self.scene.position((parent, Vector.ZERO))
         return Act(parent, origin, tuple(-force), -(self.vector(at) - self.vector(origin)).cross(force))
 
-    def rubs(self, force: Any, rate: Any) -> Any:
+    def rubs(self, force: Any, size: Any, rate: Any) -> Any:
         forces = self.system.scope.model.forces
         (name,) = (name for name, each in forces.items() if each is force)
-        return dry_friction(self.system, self.state, force.friction, name, rate)
+        speed = None if force.smooth is None else self.value(force.smooth)
+        return _dry_friction(self.system, name, (size, speed), rate)
 
     def direction(self, v: Vector) -> Vector:
         return direction_at(v)
@@ -357,16 +358,15 @@ def _in_its_joint(system: System, state: State, acting: tuple[BodyLink, int], ra
     if law is None or law.size is None:
         return 0
     (name,) = (link.joint.named_contact(link.name, field) for _, field, each in link.joint.frictions if each is law)
-    return dry_friction(system, state, law, name, rate)
+    size, speed = evaluate(tuple(map(system.scope.value, (law.size, law.smooth))), state, fifty_digits())
+    return _dry_friction(system, name, (size, None if law.smooth is None else speed), rate)
 
 
-def dry_friction(system: System, state: State, law: Any, name: str, rate: Any) -> Any:
+def _dry_friction(system: System, name: str, law: tuple[Any, Any], rate: Any) -> Any:
     """- T sign(s'), in a phase of the sense of its mode, or - T tanh(s'/v): T as it is declared, never below 0."""
-    given = (law.size, *(() if law.smooth is None else (law.smooth,)))
-    size, *speed = evaluate(tuple(map(system.scope.value, given)), state, fifty_digits())
-    size = max(size, 0 * size)
-    if speed:
-        return -size * fifty_digits().functions["tanh"](rate / speed[0])
+    size, speed = max(law[0], 0 * law[0]), law[1]
+    if speed is not None:
+        return -size * fifty_digits().functions["tanh"](rate / speed)
     sense = system.modes.get(name, ContactMode()).sense
     return -size * ((rate > 0) - (rate < 0) if sense is None else sense)
 

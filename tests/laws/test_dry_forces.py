@@ -65,7 +65,9 @@ def test_a_clutch_slips_again_where_it_would_have_to_transmit_more():
 
 def test_two_clutches_in_series_slip_where_the_weaker_one_is():
     """M_1 = 4 before M_2 = 0.5: both slip, the first locks and later the second; M_2 = 2 would hold from the start."""
-    text = CLUTCH.replace("b = 0", "b = 0, c = 0") + """
+    text = (
+        CLUTCH.replace("b = 0", "b = 0, c = 0")
+        + """
 [forces.second]
 kind = "clutch"
 bodies = ["load", "end"]
@@ -74,6 +76,7 @@ torque = 0.5
 inertia = 1
 joint = { kind = "revolute", angle = "c" }
 """
+    )
     result = run(text, 20)
     assert (senses(result, "clutch")[0], senses(result, "second")[0]) == (-1, -1)
     assert (senses(result, "clutch")[-1], senses(result, "second")[-1]) == (0, 0)
@@ -118,7 +121,7 @@ def test_the_same_as_a_size_of_the_joints_own_friction():
 
 
 def test_friction_by_a_curve_of_the_speed_and_of_the_place():
-    """m x'' = - k x - (F + D exp(-|x'|/v)) (1 + x^2) sign x' until it rests: Stribeck's curve, against an integrator."""
+    """m x'' = - k x - (F + D exp(-|x'|/v)) (1 + x^2) sign x' until it rests: Stribeck's curve, integrated."""
     text = """
 eomgen = 1
 space = "plane"
@@ -256,7 +259,7 @@ def test_what_has_no_size_or_two_is_refused():
     brake = BRAKE[: BRAKE.index("normal")].replace("outputs.T", "#")
     with pytest.raises(ModelError, match="'brake' brakes a turn, and its size is a force"):
         eomgen.loads(brake + "force = 3")
-    with pytest.raises(ModelError, match="the unit 'N' does not fit: this is in N.m"):
+    with pytest.raises(ModelError, match="the unit 'N' does not fit: this is in"):
         eomgen.loads(brake + 'torque = { value = 3, unit = "N" }')
 
 

@@ -114,8 +114,8 @@ class ForceTrial(Protocol):
     def in_joint(self, body: str) -> tuple[Any, tuple[Act, ...]]:
         """(rate s' of a body's joint, the action of a unit along s on the body and on what carries it)."""
 
-    def rubs(self, force: Force, rate: Any) -> Any:
-        """Dry friction of a force by its rate of slipping: - F sign(v), in a phase of the sense of its mode."""
+    def rubs(self, force: Force, size: Any, rate: Any) -> Any:
+        """Dry friction of a size, never below 0, by its rate: - F sign(v), in a phase of the sense of its mode."""
 
     def direction(self, v: Vector) -> Vector:
         """v over its length.

@@ -1,6 +1,7 @@
 """Brakes, clutches and belts: dry friction between what turns or slides, which slips or sticks."""
 
 from collections.abc import Iterator
+from math import prod
 from typing import Annotated, Any, ClassVar
 
 from eomgen.frozen import dataclass
@@ -86,6 +87,13 @@ class DryForce(Force):
         """Forces and couples for a unit of friction; their power is the rate of slipping."""
         raise NotImplementedError
 
+    def most(self, here: ForceTrial) -> Any:
+        """Size while it slips, in numbers, by the fields that give it."""
+        for key in self.sized:
+            if getattr(self, key) is not None:
+                return here.value(getattr(self, key))
+        return prod(here.value(getattr(self, key)) for key in self.parts if getattr(self, key) is not None)
+
 
 def _product(*factors: Expression | None) -> Expression:
     """mu*N*r*n of what is given; 0 of nothing."""
@@ -146,7 +154,7 @@ class Clutch(DryForce):
     def acts(self, here: ForceTrial) -> Iterator[Act]:
         first, second = self.bodies
         n = here.axis(second)
-        couple = here.rubs(self, n @ (here.spin(second) - here.spin(first))) * n
+        couple = here.rubs(self, self.most(here), n @ (here.spin(second) - here.spin(first))) * n
         yield Act(second, couple=couple)
         yield Act(first, couple=-couple)
 
@@ -232,7 +240,7 @@ class Brake(DryForce):
 
     def acts(self, here: ForceTrial) -> Iterator[Act]:
         rate, units = here.in_joint(self.body)
-        yield from (unit.times(here.rubs(self, rate)) for unit in units)
+        yield from (unit.times(here.rubs(self, self.most(here), rate)) for unit in units)
 
     def pushes(self, scene: LoadContext) -> tuple[Push, ...]:
         """A unit of what acts along the joint on the body, its opposite on what carries it."""
@@ -288,7 +296,8 @@ class Belt(DryForce):
 
     def acts(self, here: ForceTrial) -> Iterator[Act]:
         to, back = (here.rope(way, "start") for way in self._ways)
-        F, T = here.rubs(self, (back.rate - to.rate) / 2), here.value(self.tension)
+        T, ratio = here.value(self.tension), here.function("exp", here.value(self.coefficient) * here.value(self.wrap))
+        F = here.rubs(self, 2 * T * (ratio - 1) / (ratio + 1), (back.rate - to.rate) / 2)
         yield from to.pulled(T + F / 2)
         yield from back.pulled(T - F / 2)
 
