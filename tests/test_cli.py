@@ -39,32 +39,7 @@ TRUSS = str(ROOT / "tests" / "helpers" / "truss.toml")
 BOLT_CUTTER = str(ROOT / "models" / "bolt_cutter.toml")
 SEED = str(MODELS / "seeds" / "ch22_p1.toml")
 OSCILLATIONS = (MODELS / "seeds" / "ch22_p3.toml").read_text() + 'omega3 = "frequency(3)"\n'  # it has two
-VERBS = [
-    "new",
-    "examples",
-    "import",
-    "export",
-    "check",
-    "derive",
-    "solve",
-    "reactions",
-    "statics",
-    "kinematics",
-    "inertia",
-    "linearize",
-    "verify",
-    "simulate",
-    "sweep",
-    "identify",
-    "animate",
-    "codegen",
-    "play",
-    "report",
-    "live",
-    "lsp",
-    "schema",
-    "doctor",
-]
+VERBS = list(main.commands)
 
 FALL = """
 eomgen = 1

@@ -26,6 +26,7 @@ import reference  # noqa: E402
 pytestmark = pytest.mark.slow
 
 EVERY = list(kinds.kinds())
+SHOWN = [kind for kind in EVERY if (kinds.EXAMPLES / f"{kind}.toml").exists()]  # the first test names the others
 NOT_DRAWN = {
     *("planar", "free", "placed"),  # nothing is there that could be drawn
     *("equation", "generalized", "kinetic", "potential"),  # of coordinates
@@ -46,7 +47,7 @@ def shown_by(model: eomgen.Model, kind: str) -> list[str]:
 def test_every_kind_has_an_example_that_is_proven(kind):
     """docs/examples/KIND.toml has it, and what is derived of it holds by its certificate."""
     path = kinds.EXAMPLES / f"{kind}.toml"
-    assert path.exists(), f"'{kind}' has no example: write {path.relative_to(ROOT)}"
+    assert path.exists(), f"'{kind}' has no example: write {path.relative_to(ROOT)}, a small model that uses it"
     model = eomgen.load(path)
     assert shown_by(model, kind), f"the example of '{kind}' does not use it"
     at_rest = eomgen.inertia if kinds.kinds()[kind] == "Shapes" else eomgen.statics
@@ -56,7 +57,7 @@ def test_every_kind_has_an_example_that_is_proven(kind):
 
 
 @sampled(3)
-@pytest.mark.parametrize("kind", EVERY)
+@pytest.mark.parametrize("kind", SHOWN)
 def test_every_kind_has_a_picture(kind, tmp_path):
     """Of lengths above 0, with finite numbers, and with marks of the kind itself where it can be seen."""
     scene = kinds.example(kind).scene()
@@ -69,7 +70,7 @@ def test_every_kind_has_a_picture(kind, tmp_path):
 
 
 @sampled(10)
-@pytest.mark.parametrize("kind", EVERY)
+@pytest.mark.parametrize("kind", SHOWN)
 def test_what_is_said_of_a_kind_can_be_set_on_paper(kind):
     """Every command in its formulas has a word in Typst."""
     report = eomgen.report(kinds.EXAMPLES / f"{kind}.toml", certify=False)
@@ -87,7 +88,7 @@ def marks_of(kind: str, scene: Scene) -> list[Mark]:
 
 def test_no_example_is_left_over():
     """Each file of docs/examples is one of a kind."""
-    assert {path.stem for path in kinds.EXAMPLES.glob("*.toml")} == set(EVERY)
+    assert not {path.stem for path in kinds.EXAMPLES.glob("*.toml")} - {*EVERY}
 
 
 @each("kind", EVERY)

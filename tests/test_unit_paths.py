@@ -15,7 +15,9 @@ from slow_run import sampled, usual
 
 import eomgen
 from eomgen.cli import main
+from eomgen.cli_common import Lasting
 from eomgen.errors import ModelError, UsageError
+from eomgen.verbs import typed as valued
 from eomgen.verbs.assignments import OPTIONS
 
 pytestmark = pytest.mark.slow
@@ -142,8 +144,24 @@ def pendulum(tmp_path: Path) -> Path:
     return path
 
 
+def test_what_is_typed_for_a_verb_that_lasts_is_taken_in_the_same_way():
+    """`live` shows its page until it is ended: its values are those of `typed`, which all verbs use."""
+    model = eomgen.loads(PENDULUM)
+    for option, parameter in (("--set", "set_"), ("--start", "start")):
+        for written, expected in TAKEN[option].items():
+            if expected is None:
+                with pytest.raises(UsageError):
+                    valued(model, {parameter: (written,)})
+                continue
+            (taken,) = valued(model, {parameter: (written,)})[0].taken
+            assert (taken.name, taken.value, taken.unit) == (expected[0], pytest.approx(expected[1]), expected[2])
+
+
+ENDING = [(verb, option) for verb, option in paths() if not isinstance(main.commands[verb], Lasting)]
+
+
 @sampled(2)
-@pytest.mark.parametrize(("verb", "option"), usual([*paths()], 3, 1))
+@pytest.mark.parametrize(("verb", "option"), usual(ENDING, 3, 1))
 def test_what_is_typed_is_in_the_unit_of_the_file_or_in_its_own_and_what_was_taken_is_said(verb, option, pendulum):
     """45 of an angle in deg is 45 deg; 0.8 m of a length in cm is 80 cm; on stderr and in `taken`."""
     if verb == "identify":  # which asks for a force that is known
@@ -187,7 +205,8 @@ def test_every_verb_that_computes_takes_values_and_starts():
 
 def test_the_page_of_ways_is_that_of_the_verbs():
     """docs/unit_paths.md = table()."""
-    assert (Path(__file__).parent.parent / "docs" / "unit_paths.md").read_text(encoding="utf-8") == table()
+    page = (Path(__file__).parent.parent / "docs" / "unit_paths.md").read_text(encoding="utf-8")
+    assert page == table(), "PYTHONPATH=tests/helpers python tests/test_unit_paths.py > docs/unit_paths.md"
 
 
 class OfPint:

@@ -28,6 +28,15 @@ def rows(seed: int, tries: int = 4) -> Iterator[dict[str, str]]:
         yield best
 
 
+def rows_with(level: str, seed: int) -> Iterator[dict[str, str]]:
+    """Rows that hold a level, without end; the same for the same seed."""
+    rng, pairs = Random(f"{level}{seed}"), set(possible_pairs())
+    own = sorted(pair for pair in pairs if level in (x for _, x in pair))
+    while True:
+        if (row := _row(rng, dict(rng.choice(own)), pairs)) is not None:
+            yield row
+
+
 def _row(rng: Random, row: dict[str, str], left: set) -> dict[str, str] | None:
     """A row that holds a pair that is not covered yet; of each other factor the level with most new pairs."""
     others = [f for f in FACTORS if f not in row]

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import math
+from copy import deepcopy
 from random import Random
 from typing import Any
+
+from features import SHAPES
 
 
 def text_of(levels: dict[str, str], seed: int) -> str:
@@ -168,31 +171,7 @@ class Drawing:
                 {"kind": "disc", "radius": "h", "mass": "2*m", "at": self.v("l", "h", "0"), "angle": 0.4},
             ]
             return {"parts": parts, **P}
-        fields: dict[str, Any] = {
-            "rod": {"length": "l"},
-            "particle": {},
-            "rectangle": {"width": "l", "height": "h"},
-            "triangle": {"width": "l", "height": "h"},
-            "polygon": {"vertices": [[0, 0], ["l", 0], ["l", "h"], [0, "2*h"]]},
-            "cylinder": {"radius": "h", "length": "l"},
-            "box": {"size": ["l", "h", "h/2"]},
-            "cone": {"radius": "h", "height": "l"},
-            "ellipsoid": {"semiaxes": ["l", "h", "h/2"]},
-            "arc": {"radius": "l", "opening": 1.2},
-            "annulus": {"radius": "l", "inner": "l/3"},
-            "sector": {"radius": "l", "opening": 1.2},
-            "ellipse": {"semiaxes": ["l", "h"]},
-            "hollow_sphere": {"radius": "l", "inner": "l/2"},
-            "tube": {"radius": "h", "inner": "h/2", "length": "l"},
-            "cylindrical_shell": {"radius": "h", "length": "l"},
-            "prism": {"vertices": [[0, 0], ["l", 0], [0, "h"]], "length": "h"},
-            "conical_shell": {"radius": "h", "height": "l"},
-            "frustum": {"radius": "l/2", "top": "h", "height": "l"},
-            "pyramid": {"width": "l", "depth": "h", "height": "l"},
-            "tetrahedron": {"vertices": [[0, 0, 0], ["l", 0, 0], [0, "l", 0], [0, 0, "h"]]},
-            "torus": {"major": "l", "minor": "h/2"},
-        }.get(kind, {"radius": "l/2"})
-        return {"shape": {"kind": kind, "mass": "m", **fields}, **P}
+        return {"shape": {"kind": kind, "mass": "m", **deepcopy(SHAPES[kind])}, **P}
 
     # the base that carries the rest
 

@@ -8,13 +8,40 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
+from typing import Any
 
-SHAPES = (
-    "particle", "rod", "disc", "ring", "rectangle", "triangle", "polygon", "sphere", "cylinder", "box", "cone",
-    "ellipsoid", "arc", "annulus", "sector", "ellipse", "hollow_sphere", "spherical_shell", "hemisphere",
-    "hemispherical_shell", "tube", "cylindrical_shell", "prism", "conical_shell", "frustum", "pyramid", "tetrahedron",
-    "torus", "parts", "given", "massless", "leaking",
-)  # fmt: skip
+ROUND: dict[str, Any] = {"radius": "l/2"}
+SHAPES: dict[str, dict[str, Any]] = {
+    "particle": {},
+    "rod": {"length": "l"},
+    "disc": ROUND,
+    "ring": ROUND,
+    "rectangle": {"width": "l", "height": "h"},
+    "triangle": {"width": "l", "height": "h"},
+    "polygon": {"vertices": [[0, 0], ["l", 0], ["l", "h"], [0, "2*h"]]},
+    "sphere": ROUND,
+    "cylinder": {"radius": "h", "length": "l"},
+    "box": {"size": ["l", "h", "h/2"]},
+    "cone": {"radius": "h", "height": "l"},
+    "ellipsoid": {"semiaxes": ["l", "h", "h/2"]},
+    "arc": {"radius": "l", "opening": 1.2},
+    "annulus": {"radius": "l", "inner": "l/3"},
+    "sector": {"radius": "l", "opening": 1.2},
+    "ellipse": {"semiaxes": ["l", "h"]},
+    "hollow_sphere": {"radius": "l", "inner": "l/2"},
+    "spherical_shell": ROUND,
+    "hemisphere": ROUND,
+    "hemispherical_shell": ROUND,
+    "tube": {"radius": "h", "inner": "h/2", "length": "l"},
+    "cylindrical_shell": {"radius": "h", "length": "l"},
+    "prism": {"vertices": [[0, 0], ["l", 0], [0, "h"]], "length": "h"},
+    "conical_shell": {"radius": "h", "height": "l"},
+    "frustum": {"radius": "l/2", "top": "h", "height": "l"},
+    "pyramid": {"width": "l", "depth": "h", "height": "l"},
+    "tetrahedron": {"vertices": [[0, 0, 0], ["l", 0, 0], [0, "l", 0], [0, 0, "h"]]},
+    "torus": {"major": "l", "minor": "h/2"},
+}
+"""shape -> its sizes in a model that is drawn"""
 
 FORCES = (
     "gravity", "force", "follower", "couple", "distributed", "spring", "spring_along", "spring_start", "spring_moved",
@@ -42,7 +69,7 @@ FACTORS: dict[str, tuple[str, ...]] = {
     "joint_with": (
         "nothing", "spring_damper", "drive", "armature", "turned", "moving_seat", "point", "stops", "rubbing",
     ),
-    "shape": SHAPES,
+    "shape": (*SHAPES, "parts", "given", "massless", "leaking"),
     "force": FORCES,
     "second_force": FORCES,
     "contact": ("none", "open", "closed", "sliding", "sticking", "ending", "viscous", "bouncing"),

@@ -1,6 +1,7 @@
 """The combinations, by a command: models of a covering array against the oracle, and through verbs, formats and doors.
 
     python tests/combinations/run.py --shard 3/40 --out DIR     one shard; what is in DIR already is passed over
+    python tests/combinations/run.py --level screw --most 9 --out DIR  nine models that hold a level, as a new kind
     python tests/combinations/run.py --structures 20 --out DIR  structures at rest, so many of each kind
     python tests/combinations/run.py --totals --out DIR         what all shards found
 
@@ -30,9 +31,9 @@ import calls  # noqa: E402
 import compare  # noqa: E402
 import cross  # noqa: E402
 import structures  # noqa: E402
-from covering import rows  # noqa: E402
+from covering import rows, rows_with  # noqa: E402
 from drawn import text_of  # noqa: E402
-from features import all_pairs, pairs_of, possible_pairs, why_not  # noqa: E402
+from features import FACTORS, all_pairs, pairs_of, possible_pairs, why_not  # noqa: E402
 from refusals import lacking  # noqa: E402
 from shared import one_model  # noqa: E402
 
@@ -114,12 +115,30 @@ def shard(number: int, count: int, seed: int, out: Path, *, most: int | None, al
             continue
         if most is not None and made >= most:
             return
-        row = {"index": index, "array": seed, **of_model(levels, seed, through_verbs=not alone)}
-        if row["faults"]:
-            (out / f"model_{seed}_{index}.toml").write_text(text_of(levels, seed))
-        with ledger.open("a") as file:
-            file.write(json.dumps(row) + "\n")
+        written(ledger, levels, seed, alone=alone, index=index)
         made += 1
+
+
+def written(ledger: Path, levels: dict[str, str], seed: int, *, alone: bool, index: int) -> dict[str, Any]:
+    """A model's line, in the ledger; beside it the model, if it shows a fault."""
+    row = {"index": index, "array": seed, **of_model(levels, seed, through_verbs=not alone)}
+    if row["faults"]:
+        (ledger.parent / f"model_{ledger.stem}_{index}.toml").write_text(text_of(levels, seed))
+    with ledger.open("a") as file:
+        file.write(json.dumps(row) + "\n")
+    return row
+
+
+def of_level(level: str, seed: int, out: Path, *, most: int, alone: bool) -> None:
+    """So many models that hold a level, each in a line: what was compared, and what was found."""
+    known = [x for levels in FACTORS.values() for x in levels]
+    if level not in known:
+        sys.exit(f"there is no level '{level}': features.py has {', '.join(sorted({*known}))}")
+    out.mkdir(parents=True, exist_ok=True)
+    for index, levels in enumerate(itertools.islice(rows_with(level, seed), most)):
+        row = written(out / f"level_{level}_{seed}.jsonl", levels, seed + index, alone=alone, index=index)
+        found = row["refused"] or f"{row['numbers']} numbers, {len(row['calls'])} calls"
+        print(f"{index}: {found}; faults: {row['faults'] or 'none'}", flush=True)
 
 
 def at_rest(count: int, seed: int, out: Path) -> None:
@@ -185,6 +204,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1, help="of the covering array and its numbers")
     parser.add_argument("--out", type=Path, required=True, help="the folder of the ledgers")
     parser.add_argument("--most", type=int, help="at most so many models now")
+    parser.add_argument("--level", help="only models that hold this level of a factor")
     parser.add_argument("--alone", action="store_true", help="the oracle alone, without verbs: a fifth of the time")
     parser.add_argument("--structures", type=int, help="so many structures at rest of each kind")
     parser.add_argument("--totals", action="store_true", help="tell what is in the ledgers")
@@ -194,6 +214,9 @@ def main() -> None:
         return
     if given.structures:
         at_rest(given.structures, given.seed, given.out)
+        return
+    if given.level:
+        of_level(given.level, given.seed, given.out, most=given.most or 10, alone=given.alone)
         return
     number, count = map(int, given.shard.split("/"))
     shard(number, count, given.seed, given.out, most=given.most, alone=given.alone)

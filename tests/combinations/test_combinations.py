@@ -24,6 +24,7 @@ import calls
 import compare
 import cross
 import laws
+import solids
 import structures
 import taylor as ty
 from covering import _row
@@ -44,10 +45,22 @@ UNDER_ANOTHER_NAME = {"pin": "four_bar", "equation": "gap"}  # a kind that is dr
 
 
 def test_every_kind_of_part_is_a_level_of_what_is_drawn():
-    """A joint, constraint, force or shape enters the combinations on the day it is written."""
+    """A joint, constraint, force or shape enters the combinations on its first day, with a law of the oracle."""
     levels = {level for factor in FACTORS.values() for level in factor}
-    kinds = [kind.kind for seam in (joints, constraints, forces, shapes) for kind in seam.ALL]
-    assert {UNDER_ANOTHER_NAME.get(kind, kind) for kind in kinds} <= levels
+    oracle = (
+        (joints, laws.JOINTS, "JOINTS of laws.py"),
+        (constraints, laws.CONSTRAINTS, "CONSTRAINTS of laws.py"),
+        (forces, laws.FORCES, "FORCES of laws.py"),
+        (shapes, solids.FORMULAS, "FORMULAS of solids.py"),
+    )
+    lacking = []
+    for seam, known, table in oracle:
+        for kind in (cls.kind for cls in seam.ALL):
+            if UNDER_ANOTHER_NAME.get(kind, kind) not in levels:
+                lacking.append(f"'{kind}' is no level in features.py (how it is written: there or in drawn.py)")
+            if kind not in known:
+                lacking.append(f"'{kind}' has no law of the oracle: {table}")
+    assert not lacking, "tests/combinations/: " + "; ".join(lacking)
 
 
 PLAIN = {
