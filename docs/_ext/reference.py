@@ -41,6 +41,7 @@ from eomgen.model.fields import (  # noqa: E402
     TextRule,
     VectorRule,
 )
+from eomgen.model.forces.cylinders import Valve  # noqa: E402
 from eomgen.model.joints.base import Turned  # noqa: E402
 from eomgen.model.joints.path import PathPiece  # noqa: E402
 from eomgen.model.kinds import (  # noqa: E402
@@ -97,6 +98,7 @@ TABLES: Mapping[str, type[Any]] = {
     "tables": ValueTable,
     "inputs": Input,
     "bodies": Body,
+    "valve": Valve,
     "pieces": Piece,
     "friction": Resistance,
     "friction of a hinge": HingeFriction,

@@ -23,7 +23,7 @@ from eomgen.judge.fixes import Authored, Fixes
 from eomgen.judge.implied import Instant, implied_by, implied_by_course, simplest_explanation
 from eomgen.judge.reading import FREQUENCY, HandEquation
 from eomgen.judge.terms import LONG, short_text, terms_of
-from eomgen.judge.truth import Course, other_models, truth_of
+from eomgen.judge.truth import Course, on_one_side, other_models, truth_of
 from eomgen.judge.verdict import RIGHT, UNDECIDED, WRONG, Cause, Verdict, causes_of, kind_of_equation
 from eomgen.judge.written_pages import WrittenNumber
 from eomgen.model import Output, Unit, Valued
@@ -302,6 +302,8 @@ def of_state(case: Case, written: HandEquation, kind: str) -> Verdict | None:
     apart = over(-rest, slope) - declared
     if (found := is_zero_everywhere(case.system, apart)).holds is not False:
         return Verdict(written.given, kind, RIGHT) if found.holds else None
+    if one_side := on_one_side(case, written, "law", case.value(written.difference)):
+        return Verdict(written.given, kind, RIGHT, up_to=one_side.up_to)
     difference = short_text(-apart, scope.positive)
     cause = next((x for x in _causes_of_state(case, z, declared, apart)), None)
     text = f"{z.name}' is another one: {short_text(declared, scope.positive)}"

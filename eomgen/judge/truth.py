@@ -391,10 +391,10 @@ def on_one_side(case: Case, written: HandEquation, kind: str, scalar: Scalar) ->
     for signs in product(*(_signs(case, inside) for inside in sizes.values())):
         known = {x: sign * inside for (x, inside), sign in zip(sizes.items(), signs, strict=True)}
         if found := _holds_with(case, kind, scalar, known):
-            reported = [
+            reported = dict.fromkeys(
                 f"{readable_text(inside)} {'>' if sign > 0 else '<'} 0"
                 for inside, sign in zip(sizes.values(), signs, strict=True)
-            ]
+            )
             up_to = f"{found.from_start}what holds where {' and '.join(reported)}"
             return Decided(True, up_to if found.held.everywhere else f"{up_to} and {found.held.text}")
     return None
@@ -405,10 +405,12 @@ def sizes_in(case: Case, written: HandEquation, scalar: Scalar) -> dict[Node, Sc
 
     The author's own are as they are written: of them no sign is chosen.
     """
-    graph = case.system.scope.graph
+    scope = case.system.scope
+    graph, rates = scope.graph, {f"{z.name}'" for z in scope.symbols.z}
+    meant = {name: x for name, x in scope.names.items() if name not in rates}
     own = case.evaluated(
         written.difference,
-        {**{name: graph.symbol(f"({name})") for name in written.names}, **case.system.scope.names},
+        {**{name: graph.symbol(f"({name})") for name in written.names}, **meant},
         lambda call: graph.symbol(f"({call})"),
     )
     if any(x.op in SIDED and symbols_of((x,)) for x in order((own,))):

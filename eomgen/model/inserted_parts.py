@@ -319,7 +319,7 @@ class _Renamed:
     def _word(self, word: str) -> str:
         if self.placed and word in self._table("points"):
             return f"{self.name}.{word}"
-        known = any(word in self._table(table) for table in TABLES)
+        known = any(word in self._table(table) for table in TABLES) or word in (self.draft.states or {})
         return f"{self.name}_{word}" if known else word
 
     def _on_its_body(self, tables: dict[str, Any]) -> None:

@@ -16,7 +16,9 @@ from eomgen.model.fields import Leaf, NameRule, Table, WrittenEquation, in_si
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.base import AXES, DRY_JOINT, SIDES
 from eomgen.model.part import Part, read_part
+from eomgen.model.parts import StateVariable
 from eomgen.model.positions import DocumentPath
+from eomgen.model.quantities import Unit
 from eomgen.model.units import Typing, dimensions, typing_of
 from eomgen.model.value_tables import TABLES, functions_of_tables, with_functions
 from eomgen.symbolic.expression import NAMES, Call, Expression, Reference, parse, rate_of_call
@@ -302,7 +304,7 @@ def draft_of(cls: Any, raw: Mapping[str, Any], title: str, found: list[Diagnosti
         raw = with_functions(raw, functions_of_tables(raw[TABLES], found), found)
     draft = read_part(cls, {"name": title, **raw}, (), found, known=("eomgen",))
     found[:] = map(_of_outputs_alone, found)
-    seated = draft.altered(bodies=_seated(draft))
+    seated = draft.altered(bodies=_seated(draft), **_with_states(draft))
     limited = with_limits(seated)
     return seated.altered(constraints=Table(limited)) if len(limited) > len(draft.constraints or {}) else seated
 
@@ -347,6 +349,25 @@ def with_limits(model: Any) -> Any:
     return found
 
 
+def _with_states(model: Any) -> dict[str, Any]:
+    """Forces by their names, and the states with those that forces bring along: jack_p_1 of the force `jack`.
+
+    A start that a person typed for one stays; another model's own states do not.
+    """
+    forces, states = dict(model.forces or {}), dict(model.states or {})
+    before = {name: state for name, state in states.items() if state is not None and state.force}
+    states = {name: state for name, state in states.items() if name not in before}
+    for name, force in forces.items():
+        for own in () if force is None else force.own_states:
+            forces[name] = force.altered(name=name)
+            made = StateVariable.of_values({"unit": Unit.parse(own.unit), "about": own.about, "force": name})
+            known = before.get(f"{name}_{own.name}")
+            typed = known is not None and known.start is not None and known.start.typed
+            start = known.start if typed and known is not None else own.start
+            states.setdefault(f"{name}_{own.name}", made.altered(start=start))
+    return {"forces": Table(forces), "states": Table(states)} if forces else {}
+
+
 def _free_name(name: str, stop: Limit, constraints: Mapping[str, Any]) -> str:
     """The name, with a line below where another constraint has it."""
     while name in constraints and not isinstance(constraints[name], Limit):
@@ -382,6 +403,8 @@ def finish(model: Any) -> None:
             object.__setattr__(model, slot.name, slot.rule.read(raw, (slot.key,), found))
     object.__setattr__(model, "bodies", _seated(model))
     object.__setattr__(model, "constraints", Table(with_limits(model)))
+    for name, value in _with_states(model).items():
+        object.__setattr__(model, name, value)
     found += diagnostics_of(model, found)
     if found:
         raise ModelError(tuple(Problem(".".join(map(str, f.path)), f.what, fix=f.fix) for f in found))

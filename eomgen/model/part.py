@@ -17,6 +17,9 @@ from eomgen.model.quantities import Unit
 from eomgen.symbolic.expression import Expression, other_words
 from eomgen.symbolic.print import Symbol
 
+MADE = "made"
+"""mark, in its metadata, of a field that no user gives: the model fills it"""
+
 
 @dataclass(frozen=True)
 class Slot:
@@ -43,6 +46,8 @@ class Slot:
 def _slots_of(cls: Any) -> tuple[Slot, ...]:
     slots = []
     for field in fields(cls):
+        if field.metadata.get(MADE):
+            continue
         default = field.default_factory() if field.default_factory is not MISSING else field.default
         required = default is MISSING
         slots.append(
@@ -56,6 +61,11 @@ def _slots_of(cls: Any) -> tuple[Slot, ...]:
             )
         )
     return tuple(slots)
+
+
+@cache
+def _made_of(cls: Any) -> dict[str, Any]:
+    return {field.name: field.default for field in fields(cls) if field.metadata.get(MADE)}
 
 
 def _rule_of(annotation: Any) -> Any:
@@ -111,16 +121,25 @@ class Part:
         return _slots_of(own)
 
     @classmethod
+    def made(cls) -> dict[str, Any]:
+        """{field that no user gives: its default}"""
+        own: Any = cls
+        return _made_of(own)
+
+    @classmethod
     def of_values(cls, values: Mapping[str, Any]) -> Self:
         """A part from values that were read already."""
         part = object.__new__(cls)
         for slot in cls.slots():
             object.__setattr__(part, slot.name, values.get(slot.name, slot.default))
+        for name, default in cls.made().items():
+            object.__setattr__(part, name, values.get(name, default))
         return part
 
     def altered(self, **changes: Any) -> Self:
         """The part with some fields changed to values that were read already."""
-        return type(self).of_values({slot.name: getattr(self, slot.name) for slot in self.slots()} | changes)
+        own = (*(slot.name for slot in self.slots()), *self.made())
+        return type(self).of_values({name: getattr(self, name) for name in own} | changes)
 
     def leaves(self, path: DocumentPath) -> Iterator[Leaf]:
         """Every value of the part and of the parts in it, with its path and its rule."""

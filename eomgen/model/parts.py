@@ -1,6 +1,6 @@
 """Text or Python -> Model: what a user declares. Frozen values that compute nothing."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import field
 from typing import Annotated, Any, ClassVar, Self
 
@@ -15,6 +15,7 @@ from eomgen.model.fields import (
     EquationRule,
     EventRule,
     InstantRule,
+    Leaf,
     ListRule,
     NameRule,
     NumbersRule,
@@ -47,7 +48,8 @@ from eomgen.model.kinds import (
     TimeLaw,
     TwoOwnPoints,
 )
-from eomgen.model.part import Part, PartRule, SeamRule
+from eomgen.model.part import MADE, Part, PartRule, SeamRule
+from eomgen.model.positions import DocumentPath
 from eomgen.model.quantities import Unit
 from eomgen.model.shapes import Shape
 from eomgen.model.shapes.lines import Particle
@@ -164,11 +166,17 @@ class StateVariable(Part):
 
     title: ClassVar[str] = "state"
     in_unit: ClassVar[tuple[str, ...]] = ("start",)
-    rate: RateOfState
+    rate: RateOfState | None  # None: the force that it belongs to gives it
     start: Formula | None = None
     unit: UnitText | None = None
     about: Text | None = None
     symbol: SymbolField | None = None
+    force: str = field(default="", metadata={MADE: True})  # whose own it is; "": declared
+
+    def leaves(self, path: DocumentPath) -> Iterator[Leaf]:
+        """Its values; what a force gives its own states stands among the values of the force."""
+        if not self.force:
+            yield from Part.leaves(self, path)
 
 
 @dataclass(frozen=True, kw_only=True)

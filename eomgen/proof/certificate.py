@@ -25,12 +25,13 @@ from eomgen.mechanics.linearization import FirstOrder
 from eomgen.mechanics.start import Start
 from eomgen.proof.at_a_state import NumericState, moving_states, off_by, place_of, read_back
 from eomgen.proof.check import Certificate, Check, Tally, attempted, checked, first_wrong, unchecked
+from eomgen.proof.declared_loads import declared_state_rates
 from eomgen.proof.degrees_of_freedom import Nearby
 from eomgen.proof.free_bodies import demand_of
 from eomgen.proof.identities import identity_checks
 from eomgen.proof.masses import other_data
 from eomgen.proof.printed import Printed
-from eomgen.proof.states import STEP, declared_state_rates, with_inputs
+from eomgen.proof.states import STEP, with_inputs
 from eomgen.proof.trials import Trials
 from eomgen.resources import doing, growing
 from eomgen.symbolic.expression import Node, jacobian

@@ -15,7 +15,7 @@ from eomgen.mechanics.kinematics import (
     JointEffort,
     SystemScene,
 )
-from eomgen.model import Act
+from eomgen.model import Act, in_order
 from eomgen.proof.declared_threads import RopeInNumbers
 from eomgen.proof.states import (
     STEP,
@@ -24,12 +24,11 @@ from eomgen.proof.states import (
     Way,
     add_push,
     direction_at,
-    mass_that_enters,
     pushed_otherwise,
     pushes_of,
     way_through,
 )
-from eomgen.symbolic.expression import Scalar, State, Vector, is_zero
+from eomgen.symbolic.expression import Graph, Scalar, State, Vector, is_zero
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 
 # -------- declared work ---------------------------------------------------------------------------------------
@@ -284,6 +283,60 @@ class Declared(InNumbers):
 
     def function(self, name: str, x: Any) -> Any:
         return fifty_digits().functions[name](x)
+
+
+# -------- rates of states -------------------------------------------------------------------------------------
+
+
+def declared_state_rates(system: System, known: State) -> dict[str, Any]:
+    """{state: z'} of the states of first order at a state with its accelerations, by the file's own texts.
+
+    Each name in a text is put in as a number, the rate of another state by its own text: nothing of the system's graph
+    stands between. Those that forces bring along are worked in numbers (`Force.rates`).
+    """
+    names = system.scope.names
+    of_forces = {f"{name}'": rate for name, rate in _rates_in_forces(system, known).items()}
+    declared = {f"{name}'": part.rate for name, part in system.scope.model.states.items()}
+    laws = {name: law for name, law in declared.items() if law is not None}
+    standing = frozenset[str]().union(*(law.names for law in laws.values())) - {"pi"}
+    needed = tuple(standing & names.keys() - declared.keys())
+    graph, digits = Graph(), fifty_digits()
+    own = {name: graph.symbol(name) for name in standing}
+    values = dict(zip((own[x] for x in needed), evaluate([names[x] for x in needed], known, digits), strict=True))
+    values |= {own[name]: rate for name, rate in of_forces.items() if name in own}
+    found: dict[str, Any] = {name[:-1]: rate for name, rate in of_forces.items()}
+    for name in in_order(laws)[0]:
+        scalar = laws[name].evaluate({**own, "pi": graph.pi})
+        found[name[:-1]] = evaluate((scalar,), values, digits)[0]
+        if name in own:
+            values[own[name]] = found[name[:-1]]
+    return {name: found[name] for name in system.scope.model.states}
+
+
+def _rates_in_forces(system: System, known: State) -> dict[str, Any]:
+    """{state: z'} of those that forces bring along."""
+    found: dict[str, Any] = {}
+    for name, force in system.scope.model.forces.items():
+        if force.own_states:
+            names = (f"{name}_{own.name}" for own in force.own_states)
+            found |= dict(zip(names, force.rates(Declared(system, known)), strict=True))
+    return found
+
+
+def mass_that_enters(system: System, known: State, body: str) -> Any:
+    """Mass that enters a body per second by flows that do not say it: the rate of its mass less what is said of others.
+
+    That rate is a central difference of the declared mass, along t and the states of first order.
+    """
+    scope, symbols, digits = system.scope, system.symbols, fifty_digits()
+    moving = declared_state_rates(system, known)
+    steps = {symbols.t: 1, **{z: moving[z.name] for z in symbols.z}}
+    ways = [{x: known[x] + h * rate for x, rate in steps.items()} for h in (-STEP, STEP)]
+    m = scope.mass_properties(body).m
+    early, late = (evaluate((m,), {**known, **way}, digits)[0] for way in ways)
+    said = (force.flow for force in scope.model.forces.values())
+    others = [scope.value(x[1]) for x in said if x is not None and x[0] == body and x[1] is not None]
+    return (late - early) / (2 * STEP) - sum(evaluate(others, known, digits), start=0)
 
 
 # -------- elements --------------------------------------------------------------------------------------------

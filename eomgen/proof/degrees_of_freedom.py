@@ -31,7 +31,8 @@ from eomgen.mechanics.kinematics import Applied, ContactModes, Motion, Scope
 from eomgen.mechanics.start import Start
 from eomgen.model import Model
 from eomgen.proof.check import first_wrong
-from eomgen.proof.states import STEP, declared_state_rates
+from eomgen.proof.declared_loads import declared_state_rates
+from eomgen.proof.states import STEP
 from eomgen.symbolic.expression import Node, Scalar, State, Vector, jacobian, symbols_of
 from eomgen.symbolic.numeric import (
     NoValue,

@@ -25,8 +25,9 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Closure
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, exact_accelerations
 from eomgen.proof.check import Check, attempted, checked, unchecked
+from eomgen.proof.declared_loads import declared_state_rates
 from eomgen.proof.free_bodies import moved_otherwise
-from eomgen.proof.states import declared_state_rates, instant_of, with_inputs
+from eomgen.proof.states import instant_of, with_inputs
 from eomgen.symbolic.expression import Node, Scalar, State, order
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, floats_of, of_one_length, tolerances
 

@@ -17,8 +17,8 @@ from eomgen.mechanics.constraints import Closure
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import Motion
 from eomgen.mechanics.start import Start
-from eomgen.model import Couple, PointForce, in_order
-from eomgen.symbolic.expression import Graph, Matrix, Scalar, State, Vector, is_zero
+from eomgen.model import Couple, PointForce
+from eomgen.symbolic.expression import Matrix, Scalar, State, Vector, is_zero
 from eomgen.symbolic.numeric import NoValue, Switch, evaluate, fifty_digits, switches_of, tolerances
 
 CONSISTENT = (11,)  # seeds of states at which all constraints hold
@@ -330,44 +330,6 @@ def with_inputs(system: System, known: State) -> State:
     """A state with those of the model's inputs that it does not give."""
     own = {node: system.inputs[name] for name, node in system.symbols.inputs.items() if node not in known}
     return {**known, **dict(zip(own, evaluate(tuple(own.values()), known, fifty_digits()), strict=True))}
-
-
-def declared_state_rates(system: System, known: State) -> dict[str, Any]:
-    """{state: z'} of the states of first order at a state with its accelerations, by the file's own texts.
-
-    Each name in a text is put in as a number, the rate of another state by its own text: nothing of the system's graph
-    stands between.
-    """
-    names = system.scope.names
-    laws = {f"{name}'": part.rate for name, part in system.scope.model.states.items()}
-    standing = frozenset[str]().union(*(law.names for law in laws.values())) - {"pi"}
-    needed = tuple(standing & names.keys() - laws.keys())
-    graph, digits = Graph(), fifty_digits()
-    own = {name: graph.symbol(name) for name in standing}
-    values = dict(zip((own[x] for x in needed), evaluate([names[x] for x in needed], known, digits), strict=True))
-    found: dict[str, Any] = {}
-    for name in in_order(laws)[0]:
-        scalar = laws[name].evaluate({**own, "pi": graph.pi})
-        found[name[:-1]] = evaluate((scalar,), values, digits)[0]
-        if name in own:
-            values[own[name]] = found[name[:-1]]
-    return {name: found[name] for name in system.scope.model.states}
-
-
-def mass_that_enters(system: System, known: State, body: str) -> Any:
-    """Mass that enters a body per second by flows that do not say it: the rate of its mass less what is said of others.
-
-    That rate is a central difference of the declared mass, along t and the states of first order.
-    """
-    scope, symbols, digits = system.scope, system.symbols, fifty_digits()
-    moving = declared_state_rates(system, known)
-    steps = {symbols.t: 1, **{z: moving[z.name] for z in symbols.z}}
-    ways = [{x: known[x] + h * rate for x, rate in steps.items()} for h in (-STEP, STEP)]
-    m = scope.mass_properties(body).m
-    early, late = (evaluate((m,), {**known, **way}, digits)[0] for way in ways)
-    said = (force.flow for force in scope.model.forces.values())
-    others = [scope.value(x[1]) for x in said if x is not None and x[0] == body and x[1] is not None]
-    return (late - early) / (2 * STEP) - sum(evaluate(others, known, digits), start=0)
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,7 @@ from eomgen.proof.check import Check, attempted, checked, unchecked
 from eomgen.proof.contact_phases import leaving_at_start, other_friction, pushing_otherwise
 from eomgen.proof.declared_loads import (
     acting_otherwise,
+    declared_state_rates,
     elements_of,
     undeclared,
     working_otherwise,
@@ -44,7 +45,6 @@ from eomgen.proof.states import (
     States,
     TrialState,
     consistent_states,
-    declared_state_rates,
     in_doubles,
     is_open,
     own_start,

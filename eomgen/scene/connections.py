@@ -191,7 +191,7 @@ def force_elements(system: System) -> list[Mark]:
         found += elements(a, b, element.stiffness is not None, element.damping is not None, name, sides.get(name, 0))
         if element.pull is not None and "r" in element.pull.names:
             found.append(Mark(LineForm((a, b), fine=True), 0, "spring", name))
-        elif element.pull is not None:
+        elif element.pull is not None or element.pressed is not None:
             found += _cylinder(system, a, b, [body for body, _ in places], name)
     return found
 
@@ -219,7 +219,7 @@ def _sides(system: System) -> dict[str, int]:
     together: dict[frozenset[Any], list[tuple[str, Any]]] = {}
     for name, force in system.scope.model.forces.items():
         element = force.element
-        if element is not None and len(element.points) == 2 and element.pull is None:
+        if element is not None and len(element.points) == 2 and element.pull is None and element.pressed is None:
             ends = [system.motion.place(point) for point in element.points]
             together.setdefault(frozenset(ends), []).append((name, ends[0]))
     return {

@@ -205,15 +205,25 @@ class Declared:
         self.speeds = {name: {"rate": x} if isinstance(x, str) else x for name, x in d.get("speeds", {}).items()}
         self.inputs = d.get("inputs", {})
         self.tables = d.get("tables", {})
-        self.states = d.get("states", {})
+        self.forces = d.get("forces", {})
+        self.states = {**d.get("states", {}), **self._of_cylinders()}
         self.points = d.get("points", {})
         self.bodies = {name: {**body, "name": name} for name, body in d.get("bodies", {}).items()}
         self.constraints = d.get("constraints", {})
-        self.forces = d.get("forces", {})
         self.outputs = d.get("outputs", {})
         self.mass = {name: self._properties(body) for name, body in self.bodies.items()}
         own = {name: f"{body.get('mass', '')} {body.get('inertia', '')}" for name, body in self.bodies.items()}
         self._changing = [name for name, text in own.items() if re.search(r"\bt\b", text)]
+
+    def _of_cylinders(self) -> dict[str, dict]:
+        """The pressures of cylinders that are states, by name: {start, of the force, its chamber}."""
+        found = {}
+        for name, f in self.forces.items():
+            if f["kind"] == "hydraulic_cylinder" or (f["kind"] == "pneumatic_cylinder" and "flows" in f):
+                for k in range(len(f["areas"])):
+                    start = f["pressures"][k] if "pressures" in f else 0
+                    found[f"{name}_p_{k + 1}"] = {"start": start, "of": name, "chamber": k}
+        return found
 
     def weigh(self, t: float) -> None:
         """Sets the masses that change to those at a time, as which the equations hold them."""

@@ -678,9 +678,20 @@ class Drawing:
         q = rng.choice([x for x in free if self.kinds[x] != "pure"] or list(self.coordinates))
         unit = "d*" if self.kinds[q] == "length" else ""
         strength = "F1" if "F1" in self.inputs else "F0*sin(w*t)"
-        if other == "anchor" and how.startswith(("spring", "damper", "between", "bumper", "rope")):
+        if other == "anchor" and how.startswith(
+            ("spring", "damper", "between", "bumper", "rope", "hydraulic", "gas", "air")
+        ):
             self.points["anchor"] = self.v(-1.3, 0.9, 0.7)
-        two = [other, point]
+        two, own = [other, point], Random(f"{name}{how}{point}")
+        cylinder = {
+            "points": two,
+            "areas": ["d^2/3", "d^2/7"],
+            "volumes": ["3*d^3", "d^3"],
+            "retracted": "d/9",
+            "stroke": "12*d",
+            "pressures": ["F0/d^2", "F0/(2*d^2)"],
+        }
+        rated = {"opening": "0.4*sin(w*t)", "flow": "d^3*w/9", "drop": "F0/d^2", "supply": "3*F0/d^2"}
         if how == "spring_moved":
             self.bodies["tool"].setdefault("points", {})["S"] = self.v(
                 f"l/3 + {unit or 'h*'}{q}/5".replace("d*", ""), "h", 0
@@ -733,6 +744,33 @@ class Drawing:
                 "stiffness": "k",
                 "length": "4*d",
                 **rng.choice(({}, {"exponent": 1.5, "dissipation": 0.3}, {"damping": "c/5"})),
+            },
+            "hydraulic": {
+                "kind": "hydraulic_cylinder",
+                **cylinder,
+                "bulk": "9*k/d",
+                **own.choice(({}, {"leakage": "d^5*w/(9*F0)"})),
+                **own.choice(
+                    (
+                        {"flows": [f"d^3*w/9*sin(w*t) - d^5*w/F0/7*{name}_p_1", "d^3*w/9"]},
+                        {"valve": rated},
+                        {"valve": {**rated, "tank": "F0/(9*d^2)", "smooth": "F0/d^2"}},
+                    )
+                ),
+            },
+            "gas": {
+                "kind": "pneumatic_cylinder",
+                **cylinder,
+                "exponent": own.choice((1, 1.3)),
+                **own.choice(({}, {"outside": "F0/(3*d^2)", "length": "2*d"})),
+            },
+            "air": {
+                "kind": "pneumatic_cylinder",
+                **cylinder,
+                "exponent": 1.3,
+                "flows": ["m*w/9*sin(w*t)", f"m*w/9*({name}_p_1 - {name}_p_2)*d^2/F0"],
+                "gas": 2,
+                "temperature": 3,
             },
             "rope": {
                 "kind": "rope",

@@ -46,7 +46,7 @@ SHAPES: dict[str, dict[str, Any]] = {
 FORCES = (
     "gravity", "force", "follower", "couple", "distributed", "spring", "spring_along", "spring_start", "spring_moved",
     "damper", "damper_along", "torsion_spring", "torsion_damper", "between", "potential", "kinetic", "generalized",
-    "values", "mass_flow", "rain", "bumper",
+    "values", "mass_flow", "rain", "bumper", "hydraulic", "gas", "air",
     "rope", "gear_mesh", "none",
 )  # fmt: skip
 

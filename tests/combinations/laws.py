@@ -565,6 +565,54 @@ def _bumper(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
     return _pair(name, now, f["points"], pull, f.get("along"))
 
 
+def _volumes(f: dict, now: Any, r: float) -> list[float]:
+    """Those of the chambers of a cylinder that is r long."""
+    x = r - now.model.number(f["retracted"])
+    ways = (x, now.model.number(f.get("stroke", 0)) - x)
+    A, V = ([now.model.number(y) for y in f[key]] for key in ("areas", "volumes"))
+    return [v + a * way for v, a, way in zip(V, A, ways, strict=False)]
+
+
+def _cylinder(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
+    """p_1 A_1 - p_2 A_2 apart, against the pressure outside; of closed gas p = p_0 (V_0/V)^n."""
+    A = [now.model.number(y) for y in f["areas"]]
+    outside = now.model.number(f.get("outside", 0))
+    own = [now.states.get(f"{name}_p_{k + 1}") for k in range(len(A))]
+
+    def pull(r: float, rate: float) -> float:
+        p = own
+        if p[0] is None:
+            begun = _volumes(f, now, _rest_length({"length": "start", **f}, now, o))
+            ratios = [a / b for a, b in zip(begun, _volumes(f, now, r), strict=True)]
+            n = now.model.number(f["exponent"])
+            p = [now.model.number(y) * x**n for y, x in zip(f["pressures"], ratios, strict=True)]
+        return -sum(sign * a * (x - outside) for sign, a, x in zip((1, -1), A, p, strict=False))
+
+    return _pair(name, now, f["points"], pull)
+
+
+def _chamber(now: Any, declared: dict) -> float:
+    """p' of one chamber: E/V (Q - V') of a fluid, n/V (R T m' - p V') of a gas."""
+    name, k = declared["of"], declared["chamber"]
+    f, side = now.model.forces[name], (1, -1)[k]
+    d = ty.norm(now.point(f["points"][1]) - now.point(f["points"][0])).c
+    p = [now.states[f"{name}_p_{i + 1}"] for i in range(len(f["areas"]))]
+    V, grows = _volumes(f, now, float(d[0][0]))[k], side * now.model.number(f["areas"][k]) * float(d[1][0])
+    flow = _number(now.value(f["flows"][k])) if "flows" in f else 0.0
+    if f["kind"] == "pneumatic_cylinder":
+        n, R, T = (now.model.number(f[key]) for key in ("exponent", "gas", "temperature"))
+        return n / V * (R * T * flow - p[k] * grows)
+    flow -= side * now.model.number(f.get("leakage", 0)) * (p[0] - sum(p[1:]))
+    if "valve" in f:
+        v = f["valve"]
+        y = side * _number(now.value(v["opening"]))
+        dp = (_number(now.value(v["supply"])) - p[k]) if y > 0 else p[k] - _number(now.value(v.get("tank", 0)))
+        smooth = now.model.number(v.get("smooth", 0))
+        root = dp / (dp * dp + smooth * smooth) ** 0.25 if dp else 0.0
+        flow += y * now.model.number(v["flow"]) * root / np.sqrt(now.model.number(v["drop"]))
+    return now.model.number(f["bulk"]) / V * (flow - grows)
+
+
 def _rope(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
     """k s + c s' of a rope between two points where its stretch s > 0, and never below 0."""
     k, c = (_number(now.value(f.get(x, 0))) for x in ("stiffness", "damping"))
@@ -714,7 +762,8 @@ FORCES: dict[str, Callable] = {
     "gravity": _gravity, "force": _force, "couple": _couple, "distributed": _distributed, "spring": _spring,
     "damper": _damper, "between": _between, "torsion_spring": _torsion_spring, "torsion_damper": _torsion_damper,
     "potential": _potential, "generalized": _generalized, "kinetic": lambda *_: [], "mass_flow": _mass_flow,
-    "bumper": _bumper, "rope": _rope, "gear_mesh": _gear_mesh,
+    "bumper": _bumper, "rope": _rope, "gear_mesh": _gear_mesh, "hydraulic_cylinder": _cylinder,
+    "pneumatic_cylinder": _cylinder,
 }  # fmt: skip
 
 
@@ -866,7 +915,7 @@ def _rate(now: Any, declared: dict) -> float:
     return float(jet(now.value(declared["rate"])).c[0][0])
 
 
-STATES: dict[str, Callable] = {"rate": _rate}
+STATES: dict[str, Callable] = {"rate": _rate, "chamber": _chamber}
 
 
 # friction, contacts, reactions

@@ -41,7 +41,9 @@ from eomgen.model import constraints, forces, joints, shapes
 pytestmark = pytest.mark.slow
 
 
-UNDER_ANOTHER_NAME = {"pin": "four_bar", "equation": "gap"}  # a kind that is drawn by the level of another name
+UNDER_ANOTHER_NAME = {
+    "pin": "four_bar", "equation": "gap", "hydraulic_cylinder": "hydraulic", "pneumatic_cylinder": "gas",
+}  # a kind that is drawn by the level of another name  # fmt: skip
 
 
 def test_every_kind_of_part_is_a_level_of_what_is_drawn():
@@ -95,9 +97,9 @@ def of_law(table: str, law: str) -> compare.Product:
             space=space,
         )
     if table == "STATES":
-        return product(state="pushes")
+        return product(force="hydraulic") if law == "chamber" else product(state="pushes")
     if table == "FORCES":
-        return product(force=law, second_force="gravity")
+        return product(force=UNDER_ANOTHER_NAME.get(law, law), second_force="gravity")
     if table == "MOVING":
         return product(force="spring_moved", joint="prismatic")
     if table == "STICKING":
@@ -148,7 +150,7 @@ LAWS = [
     *(("FRICTION", law) for law in laws.FRICTION),
     ("MOVING", "point"),
     ("STICKING", "least"),
-    ("STATES", "rate"),
+    *(("STATES", law) for law in laws.STATES),
 ]
 
 

@@ -22,7 +22,7 @@ from eomgen.mechanics.kinematics.loads import Loads
 from eomgen.mechanics.kinematics.scene import SystemScene
 from eomgen.model.forces import ALL
 from eomgen.model.forces.load import Couple, PointForce, UniformField
-from eomgen.proof.declared_loads import Declared, acting_otherwise, working_otherwise
+from eomgen.proof.declared_loads import Declared, acting_otherwise, declared_state_rates, working_otherwise
 from eomgen.symbolic.expression.derivatives import gradient
 from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.expression.spatial import Vector
@@ -32,6 +32,10 @@ from eomgen.symbolic.numeric.evaluation import fifty_digits
 PLANE, SPACE = "plane", "space"
 SLIDING = 'points = ["upper.R", "lower.M"]'  # M slides in its body
 TWO, GROUND = 'points = ["upper.R", "lower.P"]', 'points = ["G", "lower.P"]'
+ONE = 'areas = 2, volumes = "l", retracted = "l/9"'
+BOTH = 'areas = [3, "k/9"], volumes = ["l", 1], retracted = 0.1, stroke = 9'
+WARM = 'gas = "g", temperature = 3'
+RATED = 'flow = "c", drop = "w"'
 EXAMPLES = {
     "gravity": {
         PLANE: [
@@ -107,6 +111,24 @@ EXAMPLES = {
             f'{TWO}, stiffness = "k", length = "9*l"',
             f'{TWO}, stiffness = "k", length = "9*l", dissipation = "c"',
         ],
+    },
+    "hydraulic_cylinder": {
+        PLANE: [
+            f'{GROUND}, {ONE}, bulk = "k", flows = "c*b\'", pressures = "k"',
+            f'{TWO}, {BOTH}, bulk = "k", flows = ["c*z", "l*a"], leakage = "c/9", pressures = ["k", "g"]',
+            f'{SLIDING}, {BOTH}, bulk = "k", valve = {{ opening = "z", {RATED}, supply = "k" }}',
+            f'{TWO}, {BOTH}, bulk = "k", valve = {{ opening = "-l", {RATED}, supply = "k", tank = 1, smooth = "c" }}',
+        ],
+        SPACE: [f'{TWO}, {BOTH}, bulk = "k", flows = ["c*z", "l*a"], leakage = "c/9", pressures = ["k", "g"]'],
+    },
+    "pneumatic_cylinder": {
+        PLANE: [
+            f'{GROUND}, {ONE}, exponent = 1.4, pressures = "k", outside = "c"',
+            f'{TWO}, {BOTH}, exponent = "w", pressures = ["k", "g"], outside = 1, length = "2*l"',
+            f'{SLIDING}, {BOTH}, exponent = 1, pressures = ["k", "g"], length = "start"',
+            f'{TWO}, {BOTH}, exponent = "w", pressures = ["k", "g"], flows = ["c*z", "F_p_1/k"], {WARM}',
+        ],
+        SPACE: [f'{GROUND}, {BOTH}, exponent = "w", pressures = ["k", "g"], outside = 1, length = "2*l"'],
     },
     "rope": {
         PLANE: [
@@ -298,6 +320,8 @@ def test_every_force_says_what_it_does_to_the_proof_too(kind, space, fields):
     state = state_of(system)
     assert [*Declared(system, state).acts_of("F")]
     assert not acting_otherwise(system, state) and not working_otherwise(equations, state)
+    rates, due = at(system.scope.state_rates, state), declared_state_rates(system, state)
+    assert rates == pytest.approx([float(x) for x in due.values()], rel=1e-13)
     if kind != "kinetic":
         others = replace(system.loads, applied=tuple(f for f in system.loads.applied if f.name != "F"))
         less = recursive.assembled_by_recursion(replace(system, loads=others))
@@ -376,7 +400,8 @@ def ground_point(system: System) -> Vector:
     return (x, y, z)
 
 
-BETWEEN_POINTS, BETWEEN_BODIES = ("spring", "damper", "between", "bumper"), ("torsion_spring", "torsion_damper")
+BETWEEN_POINTS = ("spring", "damper", "between", "bumper", "hydraulic_cylinder", "pneumatic_cylinder")
+BETWEEN_BODIES = ("torsion_spring", "torsion_damper")
 INNER = [case for case in CASES if case[0] in BETWEEN_POINTS or (case[0] in BETWEEN_BODIES and "bodies" in case[2])]
 
 

@@ -228,6 +228,13 @@ acceleration = [0, -9.81]
         rope="kind = 'rope'\npath = ['two.Q', 'one.start']\nstiffness = 'k'\nlength = 0.1\ndamping = 'c'",
         teeth="kind = 'gear_mesh'\nbodies = ['one', 'two']\nratio = -2\nstiffness = 'k'\ndamping = 'c'\n"
         "backlash = 0.1\nefficiency = 0.9\nsmooth = 0.2",
+        ram="kind = 'hydraulic_cylinder'\npoints = ['two.Q', 'one.start']\nareas = ['l', 0.2]\nvolumes = [1, 'm']\n"
+        "retracted = 0.1\nstroke = 4\nbulk = 'k'\nleakage = 0.01\nflows = ['c*u', 0]\npressures = [1, 'k']\n"
+        "valve = { opening = 'u', flow = 1, drop = 'c', supply = 'k', tank = 0.1, smooth = 0.2 }",
+        gas="kind = 'pneumatic_cylinder'\npoints = ['two.Q', 'one.start']\nareas = ['l', 0.2]\nvolumes = [1, 'm']\n"
+        "retracted = 0.1\nstroke = 4\nexponent = 1.4\npressures = [1, 'k']\noutside = 'c'\nlength = 0.3",
+        air="kind = 'pneumatic_cylinder'\npoints = ['two.Q', 'one.start']\nareas = 0.2\nvolumes = 1\nretracted = 0.1\n"
+        "exponent = 1.4\npressures = 'k'\nflows = 'c*u'\ngas = 2\ntemperature = 'l'",
         rain="kind = 'mass_flow'\npoint = 'two.end'\nabsolute = ['u', \"-a'\"]",
     ),
     "dry": ARMS_2

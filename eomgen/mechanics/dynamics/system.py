@@ -15,6 +15,7 @@ from eomgen.mechanics.kinematics import (
     Loads,
     Motion,
     Scope,
+    SystemScene,
     shorter,
 )
 from eomgen.model import Model, Table, rate_matrix_of
@@ -116,7 +117,7 @@ class System:
         solved: tuple[Solved, ...] = ()
         if scope.model.speeds:
             scope, solved = with_declared_speeds(scope, vanishes=holds_identically, shorter=shorter)
-        motion = Motion.of(scope)
+        motion = SystemScene.motion_of(scope)
         constraints = Constraints.of(motion, {} if elimination is None else elimination.used, self.modes)
         return System(
             motion, Loads.of(motion, self.loads.begun, self.modes), constraints, self.modes, elimination, self, solved
@@ -192,9 +193,8 @@ class System:
         model: Model, modes: ContactModes | None = None, *, with_laws: bool = False, begun_as: System | None = None
     ) -> System:
         """Motion, loads and constraints of a model in which dependent coordinates are as free as others."""
-        scope = Scope.of(model, with_laws=with_laws)
-        _refuse_loops(scope)
-        motion = Motion.of(scope)
+        motion = SystemScene.motion_of(Scope.of(model, with_laws=with_laws))
+        _refuse_loops(motion.scope)
         constraints = Constraints.of(motion, modes=modes)
         begun: Mapping[Node, Scalar] = {}
         if begun_as is not None:

@@ -14,7 +14,7 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Constraints
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.kinematics import Loads, Motion, Scope
+from eomgen.mechanics.kinematics import Loads, Scope, SystemScene
 from eomgen.mechanics.state import Doubles
 from eomgen.model import Table
 from eomgen.symbolic.exact import readable_all, simplest, vanishes
@@ -395,7 +395,7 @@ def _refuse_signs_of_rates(Q: ScalarRow, free: System) -> None:
 def _made_of(free: System, scope: Scope) -> System:
     """The system of another scope over the rates, dependent coordinates eliminated."""
     scope = replace(scope, model=scope.model.altered(speeds=Table({})))
-    motion = Motion.of(scope)
+    motion = SystemScene.motion_of(scope)
     made = System(
         motion, Loads.of(motion, free.loads.begun, free.modes), Constraints.of(motion, modes=free.modes), free.modes
     )

@@ -90,6 +90,21 @@ class SystemScene:
     where: str = ""
     begun: Mapping[Node, Scalar] = field(default_factory=dict)
 
+    @staticmethod
+    def motion_of(scope: Scope) -> Motion:
+        """Poses and twists of all bodies, and the rates of the states that forces bring along, which follow from them.
+
+        Raises:
+            DerivationError: a joint whose place depends on an input.
+            NotYet: a joint kind that this version does not derive.
+        """
+        motion, rates = Motion.of(scope), dict[str, Scalar]()
+        for name, force in scope.model.forces.items():
+            if force.own_states:
+                found = force.state_rates(SystemScene(motion, f"forces.{name}"))
+                rates |= {f"{name}_{own.name}'": rate for own, rate in zip(force.own_states, found, strict=True)}
+        return Motion(scope.with_states_named(rates), motion.links) if rates else motion
+
     def value(self, expression: Expression) -> Scalar:
         return self.motion.scope.value(expression)
 

@@ -394,12 +394,22 @@ class Scope:
         found |= {f"{name}'": rate for name, rate in zip(found, rates, strict=True)}
         return replace(self, names={**names, **found}).with_states_named()
 
-    def with_states_named(self) -> Scope:
-        """The scope in which the rates of states of first order stand for what they are in its own speeds."""
+    def with_states_named(self, of_forces: Mapping[str, Scalar] | None = None) -> Scope:
+        """The scope in which the rates of states of first order stand for what they are in its own speeds.
+
+        Args:
+            of_forces: {"jack_p_1'": rate} of the states that forces bring along, which need the places of bodies; rates
+                that hold one of them are named then.
+        """
         laws = {f"{name}'": part.rate for name, part in self.model.states.items()}
-        names = dict(self.names)
+        names = {**self.names, **(of_forces or {})}
+        waiting = {name for name, law in laws.items() if law is None and name not in names}
         for name in in_order(laws)[0]:
-            names[name] = laws[name].evaluate(names)
+            law = laws[name]
+            if law is not None and waiting.isdisjoint(law.names):
+                names[name] = law.evaluate(names)
+            elif law is not None:
+                waiting.add(name)
         return replace(self, names=names) if laws else self
 
     @property

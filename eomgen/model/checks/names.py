@@ -4,7 +4,7 @@ Names: what may be one, and that each means one thing.
 """
 
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 from eomgen.errors import ExpressionError
@@ -39,6 +39,7 @@ def names(catalog: Catalog) -> Iterator[Diagnostic]:
     yield from _objects(catalog)
     yield from _points(catalog)
     yield from _tables(catalog)
+    yield from _states_of_forces(catalog)
     yield from _twice(catalog, (*SYMBOL_TABLES, "tables"))
     yield from _twice(catalog, OBJECT_TABLES)
 
@@ -95,10 +96,24 @@ def _points_of_its_own(part: Any) -> tuple[str, ...]:
     return ("origin", "center") if heavy else ()
 
 
+def _states_of_forces(catalog: Catalog) -> Iterator[Diagnostic]:
+    """Diagnostics of names that a force takes for the states that it brings along."""
+    for force, part in catalog.table("forces").items():
+        for own in () if part is None else part.own_states:
+            name = f"{force}_{own.name}"
+            other = next((table for table in (*SYMBOL_TABLES, "tables") if name in catalog.table(table)), "")
+            state = catalog.table("states").get(name)
+            if other != "states" or state is None or state.force != force:
+                what = f"'{name}' is declared as {one_of(other)}, and is the name of a state of the force '{force}'"
+                yield Diagnostic((other, name), what, "give one of them another name", key=True)
+
+
 def _twice(catalog: Catalog, tables: tuple[str, ...]) -> Iterator[Diagnostic]:
     first: dict[str, str] = {}
     for table in tables:
-        for name in catalog.table(table):
+        for name, part in catalog.table(table).items():
+            if table == "states" and part is not None and part.force:  # as `_states_of_forces` says
+                continue
             if name in first:
                 what = f"'{name}' is declared twice: as {one_of(first[name])} and as {one_of(table)}"
                 yield Diagnostic((table, name), what, "give one of them another name", key=True)
@@ -390,6 +405,20 @@ def _rings(catalog: Catalog) -> Iterator[Diagnostic]:
         what = f"rates of states in a ring: {' -> '.join([*ring[:LONGEST_TRAIL], ring[0]])}"
         what = f"the rate of state '{ring[0][:-1]}' needs itself" if len(ring) == 1 else what
         yield Diagnostic(("states", ring[0][:-1], "rate"), what, "write one of them without the rates of the others")
+    yield from _rates_in_forces(catalog, rates)
+
+
+def _rates_in_forces(catalog: Catalog, rates: Mapping[str, Any]) -> Iterator[Diagnostic]:
+    """Diagnostics of a force with states of its own that acts by a rate which follows from one of such states."""
+    late = {name for name, law in rates.items() if law is None}
+    for name in in_order(rates)[0]:
+        late |= {name} if rates[name] is not None and late & rates[name].names else set()
+    for leaf, expression in catalog.expressions if late else ():
+        force = catalog.table("forces").get(leaf.path[1]) if leaf.path[0] == "forces" else None
+        if force is not None and force.own_states:
+            for name in sorted(late & expression.names):
+                what = f"'{leaf.path[1]}' has states of its own, and their rates cannot hold {name}"
+                yield Diagnostic(leaf.path, what, f"write it by the state '{name[:-1]}' itself")
 
 
 # -------- equations -------------------------------------------------------------------------------------------

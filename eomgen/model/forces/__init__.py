@@ -6,6 +6,7 @@ Adding one is one class, next to its kin or in a file of its own, and one name h
 from eomgen.model.forces.applied import CoupleForce, Generalized, PointForce
 from eomgen.model.forces.base import Force
 from eomgen.model.forces.bumper import Bumper
+from eomgen.model.forces.cylinders import HydraulicCylinder, PneumaticCylinder
 from eomgen.model.forces.dry import Belt, Brake, Clutch
 from eomgen.model.forces.elements import Between, Damper, Spring
 from eomgen.model.forces.energies import Kinetic, Potential
@@ -26,6 +27,8 @@ ALL = (
     TorsionDamper,
     Between,
     Bumper,
+    HydraulicCylinder,
+    PneumaticCylinder,
     Rope,
     GearMesh,
     Clutch,
@@ -51,8 +54,10 @@ __all__ = [
     "GearMesh",
     "Generalized",
     "Gravity",
+    "HydraulicCylinder",
     "Kinetic",
     "MassFlow",
+    "PneumaticCylinder",
     "PointForce",
     "Potential",
     "Rope",

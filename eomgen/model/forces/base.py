@@ -7,6 +7,7 @@ equations are derived; `acts` gives it in numbers at a state, by which they are 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import field
 from typing import Any, ClassVar, Protocol
 
 from eomgen.frozen import dataclass
@@ -14,7 +15,7 @@ from eomgen.model.catalog import Catalog
 from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.forces.load import Load, LoadContext, Push, SpreadLoad
 from eomgen.model.kinds import JointFriction
-from eomgen.model.part import Part
+from eomgen.model.part import MADE, Part
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression import Expression, Scalar, Vector
 
@@ -132,6 +133,13 @@ class ForceTrial(Protocol):
 # Action between two points, or between two bodies that turn, as it is declared.
 
 
+class Pressed(Protocol):
+    """A cylinder that pushes the ends of an element apart by the pressure in it."""
+
+    def push(self, here: ForceTrial, length: Any) -> Any:
+        """Force that drives the ends apart, in numbers [N]."""
+
+
 @dataclass(frozen=True)
 class Element:
     """Action between two points, or a couple that turns two bodies relative to one another.
@@ -150,6 +158,7 @@ class Element:
         power: n of the law k x^n that it then has (None: 1).
         dissipation: a share of it per speed of compression: k x^n (1 + a x') (None: 0).
         pull: a law of the length `r` and its rate `r'`; None: 0.
+        pressed: a cylinder between its ends; None: there is none.
     """
 
     points: tuple[str, ...] = ()
@@ -162,6 +171,7 @@ class Element:
     pushes: bool = False
     power: Expression | None = None
     dissipation: Expression | None = None
+    pressed: Pressed | None = None
 
     # -- in numbers ------------------------------------------------------------------------------------------
 
@@ -176,8 +186,10 @@ class Element:
     def law(self, here: ForceTrial) -> tuple[Any, Any]:
         """(T, V) at a state; V is None where the element is no spring."""
         k, c = here.value(self.stiffness), here.value(self.damping)
-        length, rate = self._measured(here)
+        length, rate = self.measured(here)
         pull, energy = c * rate, None
+        if self.pressed is not None:
+            return -self.pressed.push(here, length), None
         if self.pushes:
             return self._pushed(here, self._slack(here) - length, rate)
         if self.stiffness is not None:
@@ -196,7 +208,7 @@ class Element:
         push = k * x**n
         return -max(push * max(1 - a * rate, 0) - c * rate, 0 * x), push * x / (n + 1)
 
-    def _measured(self, here: ForceTrial) -> tuple[Any, Any]:
+    def measured(self, here: ForceTrial) -> tuple[Any, Any]:
         """(l, l') or (theta, theta')"""
         if not self.points:
             (first, w_1), (second, w_2) = map(here.turned, self.bodies)
@@ -237,14 +249,32 @@ class Element:
 # -------- base ------------------------------------------------------------------------------------------------
 
 
+@dataclass(frozen=True)
+class OwnState:
+    """A state of first order that a force brings along, under NAME_name of the force NAME.
+
+    Args:
+        unit: in which it is reported.
+        start: its value at t = 0, in SI (None: 0).
+        about: what it is, in words.
+    """
+
+    name: str
+    unit: str
+    about: str
+    start: Expression | None = None
+
+
 @dataclass(frozen=True, kw_only=True)
 class Force(Part):
     """An action on the system; `by_mass` marks one that acts on every particle of a body in proportion to its mass.
 
     A law gives `loads`, with or without a `potential`: the two ways to its generalized forces.
-    `works` is False for a kind that is read and checked but not derived yet.
+    `works` is False for a kind that is read and checked but not derived yet. One with states of its own gives their
+    rates, in `state_rates`; `name` is that under which the model holds it.
     """
 
+    name: str = field(default="", metadata={MADE: True})
     kind: ClassVar[str]
     works: ClassVar[bool] = True
     by_mass: ClassVar[bool] = False
@@ -285,6 +315,19 @@ class Force(Part):
     def of_the_start(self) -> bool:
         """True if it is slack at the length that it has where the motion starts."""
         return self.element is not None and self.element.slack == "start"
+
+    @property
+    def own_states(self) -> tuple[OwnState, ...]:
+        """The states of first order that the force brings along."""
+        return ()
+
+    def state_rates(self, scene: LoadContext) -> tuple[Scalar, ...]:
+        """z' of its own states, in q, u, z, inputs and t [their units in SI per second]."""
+        return ()
+
+    def rates(self, here: ForceTrial) -> tuple[Any, ...]:
+        """The second way to its `state_rates`, in numbers."""
+        return ()
 
     @property
     def uniform(self) -> tuple[Expression, ...] | None:
