@@ -260,6 +260,12 @@ class Body(Part):
     symbol: SymbolField | None = None
 
     @property
+    def shapes(self) -> tuple[Shape, ...]:
+        """Its shape, or those of its parts."""
+        own = () if self.shape is None else (self.shape,)
+        return (*(piece.shape for piece in self.parts or ()), *own)
+
+    @property
     def path_pieces(self) -> tuple[Any, ...]:
         """The pieces of the path on which the body is; () where it is on none."""
         return getattr(self.joint, "pieces", None) or ()

@@ -18,7 +18,7 @@ import numpy as np
 
 from eomgen.model import Model
 from eomgen.proof.check import Check, checked, first_wrong
-from eomgen.symbolic.expression import DeclaredSamples, Expression, Fraction, Sampled
+from eomgen.symbolic.expression import Expression, Fraction, Sampled
 from eomgen.symbolic.numeric import tolerances
 
 SIZES = {  # of one of it, in SI
@@ -143,13 +143,12 @@ PARTS = (Fraction(0), Fraction(3, 10), Fraction(4, 5))  # of a gap
 
 def other_functions(model: Model) -> Iterator[Check]:
     """Check that functions through samples go through them; none where the model has no such functions."""
-    laws = [found for found in map(_sampled, _expressions(model)) if found is not None]
-    tables = (table.function(name).function for name, table in model.tables.items())
-    laws += [(function, function.declared) for function in tables if function.declared is not None]
-    if laws:
+    laws = [*(law.sampled for law in _expressions(model)), *(t.function(x).function for x, t in model.tables.items())]
+    given = [law for law in laws if law is not None and law.declared is not None]
+    if given:
         name = "functions through samples go through them, and between them as they are declared"
         off = (_off_table(name, table) for name, table in model.tables.items())
-        yield checked(name, first_wrong((*map(_wrong, laws), *off)), "floating point")
+        yield checked(name, first_wrong((*map(_wrong, given), *off)), "floating point")
 
 
 def _expressions(model: Model) -> Iterator[Expression]:
@@ -159,20 +158,17 @@ def _expressions(model: Model) -> Iterator[Expression]:
         yield from (value for value in leaves if isinstance(value, Expression))
 
 
-def _sampled(law: Expression) -> tuple[Sampled, DeclaredSamples] | None:
-    found = law.sampled
-    return None if found is None or found.declared is None else (found, found.declared)
-
-
-def _wrong(law: tuple[Sampled, DeclaredSamples]) -> str:
-    """Message that names an instant at which the function has another value; ""."""
-    function, given = law
+def _wrong(function: Sampled) -> str:
+    """Message that names an instant at which a function through samples has another value; ""."""
+    given = function.declared
+    assert given is not None
     times = given.times
     gaps = np.unique(np.linspace(0, len(times) - 2, MOST).astype(int))
     places = [times[k] + part * (times[k + 1] - times[k]) for k in gaps for part in PARTS]
     span = times[-1] - times[0]
     places += [times[-1], times[0] - span / 5, times[-1] + span / 5]
-    due = _interpolated(given, np.array([float(t) for t in places])) * float(given.factor)
+    x, y, at = (np.array([float(x) for x in row]) for row in (times, given.values, places))
+    due = _interpolated((x, y), at, given.way, given.ends) * float(given.factor)
     found = np.array([float(function.spline.at(t)) for t in places])
     away = abs(found - due)
     k = int(np.argmax(away))
@@ -195,19 +191,19 @@ def _off_table(name: str, table: Any) -> str:
     return ""
 
 
-def _interpolated(given: DeclaredSamples, t: np.ndarray) -> np.ndarray:
+def _interpolated(samples: tuple[np.ndarray, np.ndarray], t: np.ndarray, way: str, ends: str) -> np.ndarray:
+    """Values between samples (times, values) by the declared way."""
     from scipy.interpolate import CubicSpline, PchipInterpolator
 
-    times, values = (np.array([float(x) for x in row]) for row in (given.times, given.values))
+    times, values = samples
+
     inside = np.clip(t, times[0], times[-1])
-    if given.way == "linear":
+    if way == "linear":
         found: np.ndarray = np.interp(t, times, values)
-    elif given.way == "steps":
+    elif way == "steps":
         found = values[np.maximum(np.searchsorted(times, t, side="right") - 1, 0)]
     else:
-        monotone = given.way == "pchip"
-        spline = (
-            PchipInterpolator(times, values) if monotone else CubicSpline(times, values, bc_type=CONDITIONS[given.ends])
-        )
+        monotone = way == "pchip"
+        spline = PchipInterpolator(times, values) if monotone else CubicSpline(times, values, bc_type=CONDITIONS[ends])
         found = spline(inside) + spline(inside, 1) * (t - inside)
     return found

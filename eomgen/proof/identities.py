@@ -10,13 +10,12 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics import ALL as FORMULATIONS
-from eomgen.mechanics.dynamics import LAGRANGE, EquationsOfMotion, System, inverse_residual
+from eomgen.mechanics.dynamics import METHODS, EquationsOfMotion, System, inverse_residual
 from eomgen.mechanics.free_bodies import with_friction
 from eomgen.mechanics.kinematics import SystemInertia
 from eomgen.proof.check import Check, checked, unchecked
 from eomgen.proof.states import States
-from eomgen.symbolic.exact import Equality, equal_at_real_states, equal_in_field
+from eomgen.symbolic.exact import equal_at_real_states, equal_in_field
 from eomgen.symbolic.expression import Node, Scalar, gradient, inner, substituted, tangent
 
 Pairs = list[tuple[Scalar, Scalar]]
@@ -54,19 +53,18 @@ def compared(claims: Sequence[Claim], states: States | None = None) -> list[Chec
     Args:
         states: real states that come before random ones.
     """
-    verdicts = equal_in_field([claim.pairs for claim in claims])
-    return [_checked(claim, verdict, states) for claim, verdict in zip(claims, verdicts, strict=True)]
-
-
-def _checked(claim: Claim, verdict: Equality | None, states: States | None) -> Check:
-    given = () if states is None else [(place.state for place in supply) for _, supply in states.supplies]
-    try:
-        found = verdict or equal_at_real_states(claim.pairs, given=given)
-    except DerivationError as error:
-        return unchecked(claim.name, error.what, "no state found")
-    differs = "" if found.culprit is None else f"{claim.labels[found.culprit]} differs"
-    how = f"{found.arithmetic}, {found.states} states" if found.states else found.arithmetic
-    return checked(claim.name, differs, how)
+    checks = list[Check]()
+    for claim, verdict in zip(claims, equal_in_field([claim.pairs for claim in claims]), strict=True):
+        given = () if states is None else [(place.state for place in supply) for _, supply in states.supplies]
+        try:
+            found = verdict or equal_at_real_states(claim.pairs, given=given)
+        except DerivationError as error:
+            checks.append(unchecked(claim.name, error.what, "no state found"))
+            continue
+        differs = "" if found.culprit is None else f"{claim.labels[found.culprit]} differs"
+        how = f"{found.arithmetic}, {found.states} states" if found.states else found.arithmetic
+        checks.append(checked(claim.name, differs, how))
+    return checks
 
 
 def rates(equations: EquationsOfMotion) -> Claim:
@@ -95,7 +93,7 @@ def routes(equations: EquationsOfMotion) -> Iterable[Claim]:
     Ma = tuple(inner(row, symbols.a) for row in equations.M)
     Q = tuple(x - f for x, f in zip(equations.Q, friction, strict=True))
     labels = [f"{word} [{name}]" for word in ("M a", "c", "Q") for name in speeds]
-    for way in FORMULATIONS:
+    for way in dict.fromkeys(METHODS.values()):
         if way.along is not None:
             pairs = _paired((Ma, equations.c, Q), way.along(system))
             yield Claim(f"M a, c and Q agree with those by {way.title}", pairs, labels)
@@ -105,7 +103,7 @@ def routes(equations: EquationsOfMotion) -> Iterable[Claim]:
     labels = [f"{word} [{name}]" for word in ("M a + c - Q", "forcing") for name in speeds]
     yield Claim("M a + c - Q agrees with inverse dynamics, body by body", pairs, labels)
     if friction != (0,) * len(equations.Q):
-        other = with_friction(LAGRANGE.assemble(system)).friction
+        other = with_friction(METHODS["lagrange"].assemble(system)).friction
         yield Claim("friction agrees with that by Lagrange's equations", [*zip(friction, other, strict=True)], speeds)
 
 

@@ -10,18 +10,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from eomgen.mechanics.dynamics import EquationsOfMotion
-from eomgen.model import Joint, Model
+from eomgen.model import Model
 from eomgen.proof.check import first_wrong
 from eomgen.proof.imported_mjcf import mjcf_otherwise
 from eomgen.proof.posed_model import (
     FloatPose,
     PosedModel,
-    every_joint,
     figures_in,
     pose_back,
     posed_further,
     poses_differ,
-    quaternion_names,
     turn_about,
     turn_by_three,
 )
@@ -111,15 +109,11 @@ class _Imported:
 
     def _rest(self) -> dict[str, float]:
         """Every coordinate 0; a free body stands where it starts."""
-        free = [joint for joint in every_joint(self.model) if joint.kind == "free"]
-        names = [
-            str(x)
-            for joint in free
-            for x in (*map(_name, getattr(joint, "position", None) or ()), *quaternion_names(joint))
-        ]
-        first = PosedModel(self.model)
+        first, bodies = PosedModel(self.model), self.model.bodies
+        free = [name for name, part in bodies.items() if part.joint is not None and part.joint.kind == "free"]
+        names = [x for name in free for x in (*first.variables(name, "position"), *first.quaternion(name))]
         starts = {q: first.number(self.model.coordinates[q].start) for q in names}
-        balls = {e: float(k == 0) for joint in every_joint(self.model) for k, e in enumerate(quaternion_names(joint))}
+        balls = {e: float(k == 0) for name in bodies for k, e in enumerate(first.quaternion(name))}
         return {q: 0.0 for q in self.model.coordinates} | balls | starts
 
     def body(self, link: str) -> str | None:
@@ -189,7 +183,8 @@ class _Imported:
 
     def yields(self, joint: Element) -> Iterator[str]:
         """Dampers and springs of hinges and slides."""
-        own = {q: part for part in every_joint(self.model) for q in _angles(part)}
+        bodies = self.model.bodies
+        own = {q: bodies[x].joint for x in bodies for q in self.posed.variables(x, "angle", "displacement")}
         for tag in ("axis", "axis2")[: AXES.get(str(joint.get("type")), 0)]:
             q, dynamics = self._coordinate(joint, tag), joint.find(f"{tag}/dynamics")
             if q is None or q not in own or dynamics is None:
@@ -308,16 +303,6 @@ def _text(element: Element, path: str) -> str:
 def _float(element: Element, path: str, otherwise: float) -> float:
     text = _text(element, path)
     return float(text) if text else otherwise
-
-
-def _name(expression: object) -> str:
-    return str(getattr(expression, "text", expression))
-
-
-def _angles(joint: Joint) -> tuple[str, ...]:
-    """The names of coordinates by which a hinge, a slide or a screw moves."""
-    found = (getattr(joint, key, None) for key in ("angle", "displacement"))
-    return tuple(_name(x) for x in found if x is not None)
 
 
 # -------- imported urdf ---------------------------------------------------------------------------------------

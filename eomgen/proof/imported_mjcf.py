@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 
 from eomgen.mechanics.dynamics import EquationsOfMotion
-from eomgen.model import Joint, Model
+from eomgen.model import Model
 from eomgen.proof.check import first_wrong
-from eomgen.proof.posed_model import PosedModel, poses_differ, quaternion_names
+from eomgen.proof.posed_model import PosedModel, poses_differ
 from eomgen.symbolic.numeric import evaluate, tolerances
 
 FREE, BALL = 0, 1  # the numbers of MuJoCo, of joints
@@ -88,16 +88,14 @@ class _Compiled:
             self.data.qpos[at] = self.posed.values.get(q or "", 0.0)
             self.speeds.append(f"{q}'")
             return
-        own = self._turning(self.posed.bodies.get(self.m.body(self.m.jnt_bodyid[j]).name))
-        names = [] if own is None else [*_places(own), *quaternion_names(own)]
-        self.all_known &= bool(names)
-        if own is not None:
-            self.data.qpos[at : at + len(names)] = [self.posed.values[x] for x in names]
-            self.speeds += [*(f"{x}'" for x in _places(own)), *map(str, getattr(own, "omega", ()) or ())]
-
-    def _turning(self, body: str | None) -> Joint | None:
-        own = None if body is None else self.model.bodies[body].joint
-        return own if own is not None and quaternion_names(own) else None
+        body = self.posed.bodies.get(self.m.body(self.m.jnt_bodyid[j]).name)
+        turn = () if body is None else self.posed.quaternion(body)
+        self.all_known &= bool(turn)
+        if body is not None and turn:
+            places = self.posed.variables(body, "position")
+            self.data.qpos[at : at + len(places) + 4] = [self.posed.values[x] for x in (*places, *turn)]
+            omega = getattr(self.model.bodies[body].joint, "omega", ())
+            self.speeds += [*(f"{x}'" for x in places), *map(str, omega or ())]
 
     def lacks(self, left_out: Sequence[Left]) -> list[str]:
         """Names of motors that are left out and could be in the model; they do not push from now on."""
@@ -258,10 +256,6 @@ class _Compiled:
             name = self.posed.bodies.get(self.m.body(k).name or f"body{k}")
             if name is not None:
                 yield k, name
-
-
-def _places(joint: Joint) -> list[str]:
-    return [str(getattr(x, "text", x)) for x in getattr(joint, "position", None) or ()]
 
 
 def _fine(values: np.ndarray) -> float:

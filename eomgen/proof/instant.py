@@ -22,7 +22,7 @@ import numpy as np
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.instant import BodyMotion, Kind, KinematicState, Mechanism, Quantities, composition_of
+from eomgen.mechanics.instant import BodyMotion, KinematicState, Quantities
 from eomgen.mechanics.kinematics import JointEffort, SystemInertia
 from eomgen.model import FUNCTIONS, PointForce
 from eomgen.proof.at_a_state import NumericState
@@ -180,7 +180,8 @@ class _Proof:
     @cached_property
     def bodies(self) -> dict[str, Seen]:
         """Every body by differences."""
-        return {link.name: self._seen(link.pose) for link in self.state.system.motion.links} | {Mechanism.FIXED: REST}
+        fixed = {} if self.state.mechanism is None else {self.state.mechanism.FIXED: REST}
+        return {link.name: self._seen(link.pose) for link in self.state.system.motion.links} | fixed
 
     def _seen(self, pose: Any) -> Seen:
         now, first, second = self.along([*pose.p, *(x for row in pose.R for x in row)])
@@ -337,24 +338,26 @@ class _Proof:
             word = ("helical motion" if slides else "rotation") if turns else "translation" if moves else "rest"
             if motion.now != word:
                 return f"'{motion.body}' is said to be in {motion.now}, and is in {word}"
-            if motion.kind is not None and (wrong := self._against_kind(motion.kind, seen, turns=turns, moves=moves)):
+            if motion.kind is not None and (wrong := self._against_kind(motion, seen, turns=turns, moves=moves)):
                 return f"'{motion.body}', {motion.kind.name}: {wrong}"
         return "" if motions else None
 
-    def _against_kind(self, kind: Kind, seen: Seen, *, turns: bool, moves: bool) -> str:
+    def _against_kind(self, motion: BodyMotion, seen: Seen, *, turns: bool, moves: bool) -> str:
         """Message if the kind of motion does not allow what is seen; ""."""
-        still = kind.name == "rest" or "translation" in kind.name
-        if (still and turns) or (kind.name == "rest" and moves):
+        assert motion.kind is not None
+        name, at = motion.kind.name, motion.kind.at
+        still = name == "rest" or "translation" in name
+        if (still and turns) or (name == "rest" and moves):
             return "it turns, or moves"
-        if kind.at is not None and kind.name in ("rotation about a fixed axis", "rotation about a fixed point"):
-            return "its fixed point moves" if self.differs((0, 0, 0), seen.velocity(self.here(kind.at)), 1) else ""
+        if at is not None and name in ("rotation about a fixed axis", "rotation about a fixed point"):
+            return "its fixed point moves" if self.differs((0, 0, 0), seen.velocity(self.here(at)), 1) else ""
         return ""
 
     # -- relative motion -------------------------------------------------------------------------------------
 
     def wrong_relative(self, relative: Sequence[tuple[str, str]]) -> str | None:
         for point, body in relative:
-            stated = composition_of(self.state.system.motion, point, body)
+            stated = Quantities(self.state.system).parts_of_motion(point, body)
             for what, order, found in self._parts(point, body):
                 if order == 2 and not self.accelerated:
                     continue

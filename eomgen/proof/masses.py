@@ -11,7 +11,7 @@ holds m, m r_C and the second moments P of a body about any origin; I = tr(P) 1 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cache, cached_property
 from itertools import product, starmap
 from random import Random
@@ -21,7 +21,6 @@ import numpy as np
 
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics import Motion, Scope
-from eomgen.model import Cell, MassProperties, Shape
 from eomgen.proof.check import Check, attempted, checked, first_wrong, unchecked
 from eomgen.proof.declared_numbers import other_functions
 from eomgen.symbolic.expression import Expression, Node, Scalar, Vector
@@ -31,6 +30,8 @@ NODES = (32, 32, 16)  # of Gauss and Legendre in each direction, for lines, surf
 QUADRATURE = "quadrature"
 FILLED = "every shape has the mass centre and the inertia of the points that it fills"
 AXES = "xyz"
+Map = Callable[[Sequence[Any]], Sequence[Any]]
+"""[0, 1]^d -> places of a shape"""
 
 
 @dataclass(frozen=True)
@@ -104,9 +105,9 @@ def _other_parameters(scope: Scope) -> Iterator[Check]:
 def _other_masses(motion: Motion) -> Iterator[Check]:
     """A contradiction where bodies have not the masses of the points that they fill, each kind tried once."""
     proof, bodies = _Proof(motion, _tried(motion.scope)), motion.scope.model.bodies
-    shapes = {shape.kind: (body, shape) for body in bodies for shape in proof.shapes_of(body)}
+    shapes = {shape.kind: (body, k) for body, part in bodies.items() for k, shape in enumerate(part.shapes)}
     made = [body for body, part in bodies.items() if part.parts is not None]
-    possible = (pair for pair in shapes.values() if not pair[1].impossible(proof.value))
+    possible = ((x, k) for x, k in shapes.values() if not bodies[x].shapes[k].impossible(proof.value))
     with np.errstate(all="ignore"):  # beyond doubles nothing can be compared
         found = attempted(
             FILLED,
@@ -127,18 +128,18 @@ def _tried(scope: Scope) -> dict[Node, float]:
 # -- quadrature ----------------------------------------------------------------------------------------------------
 
 
-def filled(shape: Shape, value: Any) -> tuple[float, np.ndarray]:
-    """(length, area or volume, S of the shape with mass 1)."""
-    if shape.is_point:
+def filled(maps: Iterable[Map], dimension: int) -> tuple[float, np.ndarray]:
+    """(length, area or volume, S of a shape with mass 1); of dimension 0 a point."""
+    if not dimension:
         return 0.0, np.diag([0.0, 0.0, 0.0, 1.0])
-    parts = [_cell(cell, shape.dimension) for cell in shape.cells(value)]
+    parts = [_cell(cell, dimension) for cell in maps]
     weights, places = np.concatenate([w for w, _ in parts]), np.concatenate([r for _, r in parts])
     measure = float(weights.sum())
     rows = np.hstack([places, np.ones((len(places), 1))])
     return abs(measure), (rows * (weights / measure)[:, None]).T @ rows
 
 
-def _cell(cell: Cell, dimension: int) -> tuple[np.ndarray, np.ndarray]:
+def _cell(cell: Map, dimension: int) -> tuple[np.ndarray, np.ndarray]:
     """(weights, places) of the nodes of Gauss and Legendre in one cell."""
     s, weights = _nodes(dimension)
     slopes = np.array([_at(cell, s + _step(dimension, k)).imag / tolerances.IMAGINARY_STEP for k in range(dimension)])
@@ -157,9 +158,8 @@ def _step(dimension: int, k: int) -> np.ndarray:
     return np.array([[tolerances.IMAGINARY_STEP * 1j * (i == k)] for i in range(dimension)])
 
 
-def _at(cell: Cell, s: np.ndarray) -> np.ndarray:
-    place: Sequence[Any] = cell(tuple(s))
-    return np.array([np.broadcast_to(x, s.shape[1:]) for x in place])
+def _at(cell: Map, s: np.ndarray) -> np.ndarray:
+    return np.array([np.broadcast_to(x, s.shape[1:]) for x in cell(tuple(s))])
 
 
 def _measure(slopes: np.ndarray) -> np.ndarray:
@@ -174,9 +174,9 @@ def _measure(slopes: np.ndarray) -> np.ndarray:
     return found
 
 
-def _moments_of(mass: MassProperties, numbers: Any) -> np.ndarray:
-    """S of the stated values: P = tr(I) 1 / 2 - I + m c c^T."""
-    m, *flat = numbers((mass.m, *mass.com, *(x for row in mass.I for x in row)))
+def _moments_of(stated: Sequence[float]) -> np.ndarray:
+    """S of the stated m, c and I: P = tr(I) 1 / 2 - I + m c c^T."""
+    m, *flat = stated
     c, I = np.array(flat[:3]), np.reshape(flat[3:], (3, 3))
     P = np.trace(I) / 2 * np.eye(3) - I + m * np.outer(c, c)
     return np.block([[P, m * c[:, None]], [m * c[None, :], np.array([[m]])]])
@@ -234,25 +234,22 @@ class _Proof:
         """Checks of the shapes of all parts of these bodies."""
         wrong, impossible, any_ = "", "", False
         for body in bodies:
-            for shape in self.shapes_of(body):
+            for k, shape in enumerate(self.motion.scope.model.bodies[body].shapes):
                 if shape.impossible(self.value):
                     impossible = f"the sizes of a {shape.kind} of '{body}' have no values that it can have"
                     continue
                 any_ = True
-                wrong = wrong or self.wrong_shape(body, shape)
+                wrong = wrong or self.wrong_shape(body, k)
         if any_:
             yield checked(FILLED, wrong, QUADRATURE)
         elif impossible:
             yield unchecked(FILLED, impossible, QUADRATURE)
 
-    def shapes_of(self, body: str) -> list[Shape]:
-        part = self.motion.scope.model.bodies[body]
-        return [piece.shape for piece in part.parts or ()] + ([part.shape] if part.shape else [])
-
-    def wrong_shape(self, body: str, shape: Shape) -> str:
-        measure, S = filled(shape, self.value)
-        stated = shape.of_mass(1, self.motion.scope.value)
-        if _differs(S, _moments_of(stated, self.numbers)):
+    def wrong_shape(self, body: str, k: int) -> str:
+        """Message if the k-th shape of a body has other moments, or another size, than what it fills; ""."""
+        shape = self.motion.scope.model.bodies[body].shapes[k]
+        measure, S = filled(shape.cells(self.value), shape.dimension)
+        if _differs(S, _moments_of(self.numbers(shape.of_mass(1, self.motion.scope.value).scalars))):
             return f"the {shape.kind} of '{body}'"
         (size,) = self.numbers((shape.measure(self.motion.scope.value),))
         return (
@@ -269,9 +266,9 @@ class _Proof:
                 self._known[body] = np.sum(list(self._pieces(body)), axis=0)
             elif part.shape is not None:
                 (m,) = self.numbers((self.motion.scope.mass_properties(body).m,))
-                self._known[body] = m * filled(part.shape, self.value)[1]
+                self._known[body] = m * filled(part.shape.cells(self.value), part.shape.dimension)[1]
             else:
-                self._known[body] = _moments_of(self.motion.scope.mass_properties(body), self.numbers)
+                self._known[body] = _moments_of(self.numbers(self.motion.scope.mass_properties(body).scalars))
         return self._known[body]
 
     @cached_property
@@ -283,7 +280,8 @@ class _Proof:
             pose = placed.pose(self.motion.scope.value)
             X = self._matrix(pose.R, pose.p)
             (m,) = self.numbers((placed.mass.m,))
-            yield placed.sign * m * (X @ filled(placed.piece.shape, self.value)[1] @ X.T)
+            shape = placed.piece.shape
+            yield placed.sign * m * (X @ filled(shape.cells(self.value), shape.dimension)[1] @ X.T)
 
     def _matrix(self, R: Sequence[Vector], p: Vector) -> np.ndarray:
         """X of [r; 1]"""
@@ -295,12 +293,13 @@ class _Proof:
     def wrong_parts(self, body: str) -> str:
         """The whole against the sum; parts that share a mass have one density."""
         made = self.motion.scope.made_of(body)
-        if _differs(self.own(body), _moments_of(made.whole, self.numbers)):
+        if _differs(self.own(body), _moments_of(self.numbers(made.whole.scalars))):
             return f"those of '{body}'"
         shared = [p for p in made.pieces if p.piece.shape.mass is None]
         if self.motion.scope.model.bodies[body].mass is None or not shared:
             return ""
-        densities = [self.numbers((p.mass.m,))[0] / filled(p.piece.shape, self.value)[0] for p in shared]
+        filling = ((p.mass.m, p.piece.shape) for p in shared)
+        densities = [self.numbers((m,))[0] / filled(x.cells(self.value), x.dimension)[0] for m, x in filling]
         return (
             f"the densities of '{body}' differ"
             if np.ptp(densities) > tolerances.COMPUTED * max(map(abs, densities))

@@ -21,21 +21,14 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import (
-    GROUND,
     BodyLink,
     Motion,
     Scope,
     SystemScene,
 )
 from eomgen.mechanics.start import Branches
-from eomgen.model import (
-    Joint,
-    Meeting,
-    Model,
-    Move,
-    Push,
-)
-from eomgen.proof.states import InNumbers, direction_at, refuse_open
+from eomgen.model import Meeting, Model
+from eomgen.proof.states import InNumbers, Pushes, direction_at, pushes_of, refuse_open
 from eomgen.symbolic.expression import Matrix, Node, Scalar, State, Vector
 from eomgen.symbolic.numeric import evaluate, fifty_digits, tolerances
 
@@ -50,7 +43,7 @@ class PosedModel:
     def __init__(self, model: Model, values: Mapping[str, float] | None = None) -> None:
         self.model, self.motion = model, Motion.of(Scope.of(model))
         self.values = {q: FIRST + STEP * k for k, q in enumerate(model.coordinates)} | dict(values or {})
-        for turn in map(quaternion_names, every_joint(model)):
+        for turn in map(self.quaternion, model.bodies):
             size = math.hypot(*(self.values[e] for e in turn))
             self.values |= {e: self.values[e] / size for e in turn}
         self.bodies = _by_remark(model.bodies)
@@ -95,6 +88,16 @@ class PosedModel:
         found[1:4] *= found[0]
         return found
 
+    def quaternion(self, body: str) -> tuple[str, ...]:
+        """The names of the quaternion of a body's joint, scalar first; () of other joints."""
+        return tuple(getattr(self.model.bodies[body].joint, "quaternion", None) or ())
+
+    def variables(self, body: str, *fields: str) -> tuple[str, ...]:
+        """The names in these fields of a body's joint: "angle", "displacement", or the three of a "position"."""
+        given = (getattr(self.model.bodies[body].joint, field, None) for field in fields)
+        parts = (x for each in given for x in (each if isinstance(each, tuple) else (each,)))
+        return tuple(str(getattr(x, "text", x)) for x in parts if x is not None)
+
     def stops(self, body: str) -> tuple[float, float]:
         """The least and the largest value of the one variable of a body's joint, infinite where there is none."""
         stops: list[Any] = [x for x in self.model.constraints.values() if x.about_joint]
@@ -112,15 +115,6 @@ class PosedModel:
             if gap is not None and not gap.calls and name.startswith("mimic"):
                 left = self.number(gap)
                 yield f"'{name}' leaves {left:.3g}" if abs(left) > tolerances.COMPUTED * 10 else ""
-
-
-def quaternion_names(joint: Joint) -> tuple[str, ...]:
-    """The names of its quaternion, scalar first; () of other joints."""
-    return tuple(getattr(joint, "quaternion", None) or ())
-
-
-def every_joint(model: Model) -> Iterator[Joint]:
-    return (body.joint for body in model.bodies.values() if body.joint is not None)
 
 
 def branches_otherwise(model: Model, start: Mapping[str, float], branches: Branches) -> str:
@@ -158,7 +152,7 @@ def _is_left(here: PosedModel, pin: str, links: Sequence[str]) -> bool | None:
 def _hinge(here: PosedModel, aside: PosedModel, body: str) -> np.ndarray | None:
     """The place of a body's hinge in the ground: that which two poses beside its parent share; None without one."""
     above = here.motion.link(body).parent
-    parent = None if above == GROUND else here.motion.links[above].name
+    parent = None if above < 0 else here.motion.links[above].name
     (R, p), (R1, p1) = (posed.between(parent, body) for posed in (here, aside))
     turn, moved = (R1 @ R.T)[:2, :2], (p1 - R1 @ R.T @ p)[:2]
     if abs(np.linalg.det(np.eye(2) - turn)) < tolerances.NEARLY_SINGULAR:
@@ -285,7 +279,11 @@ class _Seated(InNumbers):
         moves = () if joint is None else joint.moves_from_parent
         place, e = self._seat, (self.one(1), Vector.ZERO)
         for move in moves:
-            way, turn = self._moved(move)
+            if move.pieces:
+                way = self._walked(move.pieces, self._typed(move.way), self._typed(move.heading))
+            else:
+                way = self._typed(move.way) * self._unit(move.axis)
+            turn = self._turn(move.axis, move.angle) if move.quaternion is None else self._four(move.quaternion)
             place, e = place + _turned(e, way), _after(e, turn)
         place = place - _turned(e, self.vector(self._own_point))
         stated: Vector = above.from_above(here.p - above.p)
@@ -316,21 +314,20 @@ class _Seated(InNumbers):
         named = joint is not None and joint.point is not None
         return self.motion.points[self.link.name][joint.point.rpartition(".")[2]] if named else Vector.ZERO
 
-    def _moved(self, move: Move) -> tuple[Vector, Quaternion]:
-        """(how far, how it turns)"""
-        way = self._walked(move) if move.pieces else self._typed(move.way) * self._unit(move.axis)
-        if move.quaternion is not None:
-            e0, e1, e2, e3 = self.at([self.motion.scope.names[name] for name in move.quaternion])
-            return way, (e0, Vector((e1, e2, e3)))
-        half, functions = self._typed(move.angle) / 2, fifty_digits().functions
-        return way, (functions["cos"](half), functions["sin"](half) * self._unit(move.axis))
+    def _turn(self, axis: Any, angle: Any) -> Quaternion:
+        half, functions = self._typed(angle) / 2, fifty_digits().functions
+        return functions["cos"](half), functions["sin"](half) * self._unit(axis)
 
-    def _walked(self, route: Move) -> Vector:
-        left, heading, functions = self._typed(route.way), self._typed(route.heading), fifty_digits().functions
-        place: Vector = Vector.ZERO
-        for piece in route.pieces:
+    def _four(self, names: Sequence[str]) -> Quaternion:
+        e0, e1, e2, e3 = self.at([self.motion.scope.names[name] for name in names])
+        return e0, Vector((e1, e2, e3))
+
+    def _walked(self, pieces: Sequence[Any], left: Any, heading: Any) -> Vector:
+        """Place that is so far along lines and arcs, of which the first begins at the origin, with a heading."""
+        place, functions = Vector.ZERO, fifty_digits().functions
+        for piece in pieces:
             length = self._typed(piece.line) if piece.arc is None else self._typed(piece.arc) * self._typed(piece.angle)
-            way = left if piece is route.pieces[-1] else min(left, length)
+            way = left if piece is pieces[-1] else min(left, length)
             turn = 0 * way
             if piece.arc is not None:
                 turn = way / self._typed(piece.arc) * (1 if piece.turn == "ccw" else -1)
@@ -463,24 +460,16 @@ class _Contact(InNumbers):
         for row in self.system.constraints.rows:
             if row.constraint != self.name:
                 continue
-            for label, pushes in ((row.component, row.pushes), ("t", row.tangent), ("s", row.cross_tangent)):
-                if pushes and label and self._misplaced(touch, label, pushes):
+            for label, loads in ((row.component, row.pushes), ("t", row.tangent), ("s", row.cross_tangent)):
+                if label and self._misplaced(touch, label, pushes_of(self.motion, self.state, loads)):
                     return f"its force '{label}' is not of 1 N at the contact, in its direction"
         return ""
 
-    def _misplaced(self, touch: Touch, label: str, pushes: Sequence[Push]) -> bool:
+    def _misplaced(self, touch: Touch, label: str, pushes: Pushes) -> bool:
         """True if pushes are not a unit force at the contact on its body, and the opposite one on the other."""
-        found: dict[str, tuple[Vector, Vector]] = {}
-        for push in pushes:
-            wrench = self.motion.body_wrench(push)
-            if wrench is not None:
-                body, W = wrench
-                f, tau = found.get(body, (Vector.ZERO, Vector.ZERO))
-                found[body] = f + self.vector(W.f), tau + self.vector(W.tau)
         forces = []
-        for body, (own_force, own_couple) in found.items():
-            f, tau = (self.carried(body, x, direction=True) for x in (own_force, own_couple))
-            about_contact = tau - (touch.first - self.carried(body, Vector.ZERO)).cross(f)
+        for body, (moment, f) in pushes.items():
+            about_contact = moment - touch.first.cross(f)
             if about_contact.largest > tolerances.COMPUTED * (1 + touch.first.largest):
                 return True
             forces.append(f if body == self._body else -f)

@@ -21,7 +21,7 @@ import numpy as np
 
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics import BodyLink, SystemScene
-from eomgen.model import Couple, Meeting, PointForce, Shape
+from eomgen.model import Couple, Meeting, PointForce
 from eomgen.proof.at_a_state import NumericState
 from eomgen.proof.check import Check, Tally
 from eomgen.proof.declared_loads import placed_pushes
@@ -154,13 +154,14 @@ class _Shown(InNumbers):
         seat = self._in_axes(link, self._ends_of(name)[0][None])[0]  # from there it may have slid
         part = self.system.scope.model.bodies[name]
         slides = any(all(map(is_zero, w)) for w, _ in link.S)
-        shapes = [shape for shape in self._shapes(name) if not shape[0].is_point]
         if part.shape is not None or part.parts is not None:
-            if not shapes:
+            clouds = self._clouds(name)
+            if not clouds:
                 return ""
             if not len(own):
                 return "is not drawn"
-            right = self._box(shapes)
+            cloud = np.concatenate(clouds)[:, : self.d]
+            right = cloud.min(axis=0), cloud.max(axis=0)
             wrong = self._apart((own.min(axis=0), own.max(axis=0)), right)
             if wrong and self.d == 3 and slides:  # the way from the seat is drawn with it
                 reach = np.array([seat, self.placed(link.point), *right])
@@ -192,29 +193,22 @@ class _Shown(InNumbers):
         found: np.ndarray = (places - p) @ R
         return found
 
-    def _shapes(self, name: str) -> list[tuple[Shape, np.ndarray, np.ndarray]]:
-        """(shape, R, p) of a body or of its pieces that are no holes."""
-        part, value = self.system.scope.model.bodies[name], self.system.scope.value
-        if part.parts is None:
-            return [] if part.shape is None else [(part.shape, np.eye(3), np.zeros(3))]
-        found = []
-        for placed in self.system.scope.made_of(name).pieces:
-            if placed.sign > 0:
-                pose = placed.pose(value)
-                flat = [float(x) for x in self.at((*(x for row in pose.R for x in row), *pose.p))]
-                found.append((placed.piece.shape, np.reshape(flat[:9], (3, 3)), np.array(flat[9:])))
-        return found
-
-    def _box(self, shapes: Sequence[tuple[Shape, np.ndarray, np.ndarray]]) -> Corners:
-        """The corners of the box around places inside shapes."""
-        clouds = []
-        for shape, R, p in shapes:
+    def _clouds(self, name: str) -> list[np.ndarray]:
+        """Places inside the shape of a body, or inside its pieces that are no holes; none of points."""
+        part, scope, clouds = self.system.scope.model.bodies[name], self.system.scope, []
+        placed = [] if part.parts is None else [x for x in scope.made_of(name).pieces if x.sign > 0]
+        poses = [pose.pose(scope.value) for pose in placed]
+        for k, shape in enumerate(part.shapes if part.parts is None else [x.piece.shape for x in placed]):
+            if shape.is_point:
+                continue
             cells, grid = shape.cells(self._number), itertools.product(GRID.tolist(), repeat=shape.dimension)
             parts = [s for s in grid if len(cells) == 1 or s[0] == 1]  # of a fan of several its outer side
-            at = [cell(s) for cell in cells for s in parts]
-            clouds.append(np.array(at, dtype=float) @ R.T + p)
-        cloud = np.concatenate(clouds)[:, : self.d]
-        return cloud.min(axis=0), cloud.max(axis=0)
+            cloud = np.array([cell(s) for cell in cells for s in parts], dtype=float)
+            if poses:
+                flat = [float(x) for x in self.at((*(x for row in poses[k].R for x in row), *poses[k].p))]
+                cloud = cloud @ np.reshape(flat[:9], (3, 3)).T + np.array(flat[9:])
+            clouds.append(cloud)
+        return clouds
 
     def _number(self, expression: Any) -> float:
         return float(self.one(self.system.scope.value(expression)))

@@ -22,13 +22,12 @@ from typing import Any
 import numpy as np
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.linearization import LinearEquations, Modes, SmallMotions
+from eomgen.mechanics.linearization import Modes, SmallMotions
 from eomgen.proof.certificate import certify
 from eomgen.proof.check import Certificate, Check, attempted, checked, first_wrong, unchecked
 from eomgen.proof.degrees_of_freedom import Numbers50
 from eomgen.proof.neighbouring_motions import Differences, DigitColumn, MotionDifference
 from eomgen.proof.reported_small_motions import PrintedModes, linear_entries, small_motions_reported
-from eomgen.symbolic.exact import Polynomial
 from eomgen.symbolic.expression import Node
 from eomgen.symbolic.numeric import (
     NoValue,
@@ -144,7 +143,7 @@ def _of_part(differences: Differences) -> Check:
 def _entries(modes: Modes) -> dict[str, list[list[Any]]]:
     """The printed matrices in numbers: exact ones with 50 digits; C of second order is printed in its parts."""
     small = modes.small
-    e: LinearEquations = small.equations
+    e = small.equations
     whole = {"C": _numbers(small, e.C)} if small.is_second_order else {}
     return {letter: _numbers(small, getattr(e, letter), modes) for letter in "MCKBFED" if letter not in whole} | whole
 
@@ -394,16 +393,16 @@ class _Proof:
             [[next(entries) for _ in range(k)] for _ in range(rows)]
             for rows, k in ((n, n), (n, n), (n, m), (m, m), (m, n))
         )
-        p = Polynomial(tuple(entries))
+        coefficients = tuple(entries)
         for part in (7, -13):
             s = one * self.rate * part / 10
             upper = [[s * int(i == j) - x for j, x in enumerate(row)] + [-x for x in E[i]] for i, row in enumerate(F)]
             lower = [[*K[i], *(s * x + c for x, c in zip(M[i], C[i], strict=True))] for i in range(n)]
             rows = upper + lower
-            det = _determinant(rows)
-            size = sum(abs(c * s**k) for k, c in enumerate(p.coefficients))
-            if abs(det - p.at(s)) > tolerances.DIFFERENCE_AT_50 * size:
-                return f"p({float(s):.6g}) = {float(p.at(s)):.10g} against {float(det):.10g}"
+            det, p = _determinant(rows), _at(coefficients, s)
+            size = sum(abs(c * s**k) for k, c in enumerate(coefficients))
+            if abs(det - p) > tolerances.DIFFERENCE_AT_50 * size:
+                return f"p({float(s):.6g}) = {float(p):.10g} against {float(det):.10g}"
         return ""
 
     @property
@@ -543,7 +542,7 @@ class _Proof:
             answers = np.linalg.solve(s * np.eye(len(self.A)) - self.A, small.input_matrix.astype(complex))
             for f in self.modes.transfers:
                 i, j = names.coordinates.index(f.coordinate), names.inputs.index(f.input)
-                found = _value(f.above, s, trial) / _value(f.below, s, trial)
+                found = _value(f.above.coefficients, s, trial) / _value(f.below.coefficients, s, trial)
                 if abs(found - answers[i, j]) > tolerances.SAME_PLACE * abs(answers[:, j]).max():
                     return f"{f.coordinate.name}/{f.input.name}: {found:.6g} against {answers[i, j]:.6g}"
         return ""
@@ -562,12 +561,18 @@ def _determinant(rows: Sequence[Sequence[Any]]) -> Any:
     return product
 
 
-def _value(polynomial: Polynomial, s: complex, trial: dict[Node, Any]) -> complex:
+def _value(coefficients: Sequence[Any], s: complex, trial: dict[Node, Any]) -> complex:
     digits = {x: fifty_digits().number(v) for x, v in trial.items()}
-    floats = [
-        c if isinstance(c, float) else float(evaluate((c,), digits, fifty_digits())[0]) for c in polynomial.coefficients
-    ]
-    return complex(Polynomial(tuple(floats)).at(s))
+    numbers = (c if isinstance(c, float) else float(evaluate((c,), digits, fifty_digits())[0]) for c in coefficients)
+    return complex(_at([*numbers], s))
+
+
+def _at(coefficients: Sequence[Any], s: Any) -> Any:
+    """Value of a polynomial, the constant first."""
+    value: Any = 0
+    for c in reversed(coefficients):
+        value = value * s + c
+    return value
 
 
 def _factor(rng: Random, positive: bool) -> Any:

@@ -16,7 +16,7 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, exact_accelerations
 from eomgen.mechanics.free_bodies import Reactions, SystemFriction, imbalance
-from eomgen.mechanics.kinematics import ContactMode, spin_between
+from eomgen.mechanics.kinematics import ContactMode
 from eomgen.proof.check import Check, attempted, checked, unchecked
 from eomgen.proof.contact_phases import leaving_at_start, other_friction, pushing_otherwise
 from eomgen.proof.declared_loads import (
@@ -181,7 +181,8 @@ class Trials:
             for k, link in enumerate(links):
                 rates, here, twist = all_rates[12 * k :], now[12 * k :], motions[6 * k : 6 * k + 6]
                 R_now = Matrix.of((here[0:3], here[3:6], here[6:9]))
-                spin = spin_between(R_now, Matrix.of((rates[0:3], rates[3:6], rates[6:9])))
+                W = R_now.T @ Matrix.of((rates[0:3], rates[3:6], rates[6:9]))
+                spin = Vector((W[2][1], W[0][2], W[1][0]))
                 velocity = R_now.T @ Vector(rates[9:12])
                 pairs = zip(twist, (*spin, *velocity), strict=True)
                 if any(abs(a - b) > tolerances.DIFFERENCE_AT_50 * (1 + abs(a)) for a, b in pairs):

@@ -9,9 +9,6 @@ from eomgen.mechanics.instant.kinematic_state import KinematicState as Kinematic
 # Values at a state, in readable form; what is very long stays as it is
 from eomgen.mechanics.instant.kinematic_state import Readable as Readable
 
-# The motion of a point, seen from a body (or from the ground)
-from eomgen.mechanics.instant.kinematic_state import composition_of as composition_of
-
 # Rigid bodies in motion in the plane, at one configuration
 from eomgen.mechanics.instant.mechanism import Mechanism as Mechanism
 
@@ -23,9 +20,6 @@ from eomgen.mechanics.instant.motion_kind import Centrodes as Centrodes
 
 # The line on which a place runs
 from eomgen.mechanics.instant.motion_kind import Curve as Curve
-
-# The kind of motion of a body
-from eomgen.mechanics.instant.motion_kind import Kind as Kind
 
 # The kinds of motion of the bodies of a system
 from eomgen.mechanics.instant.motion_kind import Kinds as Kinds

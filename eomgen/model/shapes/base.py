@@ -25,6 +25,11 @@ class MassProperties:
     com: Vector
     I: Matrix
 
+    @property
+    def scalars(self) -> tuple[Any, ...]:
+        """m, com and I, row by row: 13 scalars."""
+        return (self.m, *self.com, *(x for row in self.I for x in row))
+
     def about(self, point: Vector) -> Matrix:
         """Inertia about a point, the axes unchanged: I + m (d.d 1 - d d^T), d from the point to the mass centre."""
         return SpatialInertia.about_center(self.m, self.com - point, self.I).I

@@ -31,9 +31,9 @@ from eomgen.mechanics.instant import (
     Kinds,
     KinematicState,
     Mechanism,
+    Quantities,
     Readable,
     RotationCenter,
-    composition_of,
 )
 from eomgen.symbolic.exact import book_form, vanishes
 from eomgen.symbolic.expression import Fraction, Node, Scalar, Vector, is_zero, over, sqrt
@@ -343,7 +343,7 @@ def relative_payload(system: System, point: str, body: str, state: Mapping[Node,
 
 def velocity_parts(system: System, point: str, body: str, readable: Readable) -> dict[str, Vector]:
     """The parts of velocity and acceleration by name, axes of the body, readable."""
-    parts = composition_of(system.motion, point, body)
+    parts = Quantities(system).parts_of_motion(point, body)
     own = {"relative_velocity": parts.relative[1], "relative_acceleration": parts.relative[2]}
     ground = {name: getattr(parts, name) for name in NAMES if name != "origin"} | {"origin": parts.carrier.a}
     seen = {name: parts.R.T @ x for name, x in ground.items()} | own
@@ -375,7 +375,7 @@ def _is_particle(system: System, owner: str | None, point: str) -> bool:
 
 def _in_frame(system: System, particle: str, body: str, readable: Readable) -> tuple[Step, ...]:
     """m a_r = F - m a_t - m a_C in the axes of the body; F: applied forces and reactions."""
-    parts = composition_of(system.motion, f"{particle}.origin", body)
+    parts = Quantities(system).parts_of_motion(f"{particle}.origin", body)
     m, letters = system.scope.mass_properties(particle).m, axes(system)
     ground = {
         "applied": applied_force(system, particle),
