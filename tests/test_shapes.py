@@ -302,7 +302,7 @@ def test_a_shape_has_the_mass_centre_and_inertia_of_what_it_fills(cls):
     def number(expression):
         return float(value(expression))
 
-    measure, S = filled(shape, number)
+    measure, S = filled(shape.cells(number), shape.dimension)
     mass = shape.of_mass(1, number)
     center, P = S[:3, 3], S[:3, :3] - np.outer(S[:3, 3], S[:3, 3])
     assert measure == pytest.approx(float(shape.measure(number)), rel=1e-10)

@@ -101,11 +101,6 @@ from eomgen.model.joints.ball import rotation_of as rotation_of
 # w = 2 Im(e* o e'), child's axes
 from eomgen.model.joints.ball import spin_of_quaternion as spin_of_quaternion
 
-# Connection of a body to its parent
-from eomgen.model.joints.base import Joint as Joint
-
-# A displacement, and a turn: of a screw both along one axis
-from eomgen.model.joints.base import Move as Move
 from eomgen.model.joints.base import Z as Z
 
 # The rotation that turns one after the other make, each about the axes that the one before left
@@ -264,14 +259,8 @@ from eomgen.model.restated import law_of as law_of
 # A function of time through samples, for `motion`, `rate`, `acceleration` or an input; arrays are welcome
 from eomgen.model.sampled_laws import samples as samples
 
-# A map from numbers to the points of a shape
-from eomgen.model.shapes.base import Cell as Cell
-
 # Mass m [kg], mass centre com (3, body axes) [m], inertia I about it (3 x 3, body axes) [kg m^2]
 from eomgen.model.shapes.base import MassProperties as MassProperties
-
-# A homogeneous body
-from eomgen.model.shapes.base import Shape as Shape
 
 # An arc of an ellipse in the plane z = 0 of its axes
 from eomgen.model.shapes.forms import ArcForm as ArcForm

@@ -14,8 +14,6 @@ from eomgen.mechanics.dynamics.contributions import Contributions as Contributio
 
 # Accelerations and multipliers of equations of motion as explicit functions
 from eomgen.mechanics.dynamics.explicit_accelerations import Explicit as Explicit
-from eomgen.mechanics.dynamics.formulations import ALL as ALL
-from eomgen.mechanics.dynamics.formulations import LAGRANGE as LAGRANGE
 from eomgen.mechanics.dynamics.formulations import METHODS as METHODS
 
 # The equations of motion by recursion over the tree; constraint rows by multipliers

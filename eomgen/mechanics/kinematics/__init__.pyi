@@ -28,9 +28,6 @@ from eomgen.mechanics.kinematics.motion import Motion as Motion
 # The motion of one rigid body at a state, ground axes
 from eomgen.mechanics.kinematics.motion import VelocityField as VelocityField
 
-# Angular velocity in body axes from a rotation and its time derivative: w~ = R^T R'
-from eomgen.mechanics.kinematics.motion import spin_between as spin_between
-
 # A state in numbers, by which exact values are recognised, never made
 from eomgen.mechanics.kinematics.places import Located as Located
 
