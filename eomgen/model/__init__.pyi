@@ -100,7 +100,6 @@ from eomgen.model.joints.ball import rotation_of as rotation_of
 
 # w = 2 Im(e* o e'), child's axes
 from eomgen.model.joints.ball import spin_of_quaternion as spin_of_quaternion
-
 from eomgen.model.joints.base import Z as Z
 
 # The rotation that turns one after the other make, each about the axes that the one before left
