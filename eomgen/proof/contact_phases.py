@@ -33,6 +33,7 @@ from eomgen.mechanics.kinematics import ContactMode, SystemInertia
 from eomgen.mechanics.start import Start
 from eomgen.model import Contact, Resistance
 from eomgen.proof.check import Check, Tally
+from eomgen.proof.impacts import Touched, after_impact, around
 from eomgen.proof.posed_model import misplaced
 from eomgen.proof.states import InNumbers, own_start
 from eomgen.simulation import Phase, PhaseModel, ReactionColumns, sliding_velocity
@@ -40,7 +41,6 @@ from eomgen.symbolic.expression import Scalar, State, is_zero
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 
 STATES = 100  # of a phase that are looked at
-STEPS, MOST_STEPS = 1000, 50_000  # of an impact that is followed in small steps
 MOST_IMPULSES = 20  # of joints that are looked at
 STEPPED = 0.01  # of the speeds before: so far the result of small steps may be off
 LOW = 1e2 * tolerances.COMPUTED  # [of the coordinates] a flight that need not be followed
@@ -249,7 +249,7 @@ class _Bodies:
             return "a coordinate jumps"
         pushes, frees = [], [J for J, _ in self._rows_at(self.system.constraints.closing, late)]
         still = np.array_equal(early, late)
-        e, mu, exactly = self._restitutions, self._frictions, self._rebounds_exactly
+        e, mu, exactly, rubs = self._restitutions, self._frictions, self._rebounds_exactly, False
         for name, rows in self._rows.items():
             found = self._rows_at(rows, late)
             speeds = [v for _, v in found]
@@ -265,14 +265,14 @@ class _Bodies:
                 wrong = "is still approached with" if speeds[0] < 0 and not due else "rebounds too slowly, by"
                 return f"'{name}' {wrong} {due - speeds[0]:.3g} m/s"
             if name in mu:
-                (t, _), n = self._sliding_row(rows[0], late), found[0][0]
-                pushes += [n + mu[name] * t, n - mu[name] * t]
-                if wrong := self._otherwise_than_in_steps(name, (n, t), mu[name], early, late):
-                    return wrong
+                along, n = [t for t, _ in self._sliding_rows(rows[0], late)], found[0][0]
+                pushes += [n + mu[name] * t for t in around(along)]
+                rubs = True
             elif speeds[0] - due <= tolerances.OPEN_GAP * size or not exactly:
                 pushes.append(found[0][0])
                 frees += [J for J, v in found[1:] if abs(v) <= tolerances.OPEN_GAP * size]
-        return self._left(pushes, frees, early, late)
+        otherwise = self._otherwise_by_iteration(early, late) if rubs else ""
+        return otherwise or self._left(pushes, frees, early, late)
 
     def on_joints_alone(self, impulses: Mapping[str, float]) -> list[str]:
         """The bodies on which joints act in an impact, all with their impulses, and no force of anything else."""
@@ -312,7 +312,8 @@ class _Bodies:
         M = units[:-1] - units[-1]
         gained = float((speeds[1] @ M @ speeds[1] - speeds[0] @ M @ speeds[0]) / 2)
         least = tolerances.UNBALANCED * float(speeds[0] @ M @ speeds[0])
-        if not self._rebounds_exactly and gained > least and not np.any(self._biases(late)):
+        judged = self._frictions or not self._rebounds_exactly
+        if judged and gained > least and not np.any(self._biases(late)):
             return f"the impact gains {gained:.3g} J"
         found, V = np.linalg.eigh((M + M.T) / 2)
         held = found > tolerances.SUMMED * max(found, default=0.0)
@@ -338,17 +339,18 @@ class _Bodies:
         still = self._with(state, [np.zeros(len(self.system.symbols.u))])
         return self._numbers(tuple(row.velocity for row in rows), still)[0] if rows else np.zeros(0)
 
-    def _sliding_row(self, row: Row, state: np.ndarray) -> tuple[np.ndarray, float]:
-        """(J, J u + sigma) of the sliding velocity of a contact."""
+    def _sliding_rows(self, row: Row, state: np.ndarray) -> list[tuple[np.ndarray, float]]:
+        """(J, J u + sigma) of the sliding velocity of a contact, in space along two directions."""
         n = len(self.system.symbols.u)
-        found = self._numbers((row.sliding,), self._with(state, [*np.eye(n), np.zeros(n)]))[:, 0]
-        return found[:-1] - found[-1], float(self._numbers((row.sliding,), state[None])[0, 0])
+        along = tuple(v for v in (row.sliding, row.across) if v is not None)
+        found = self._numbers(along, self._with(state, [*np.eye(n), np.zeros(n)]))
+        return list(zip((found[:-1] - found[-1]).T, self._numbers(along, state[None])[0].tolist(), strict=True))
 
     @property
     def _frictions(self) -> dict[str, float]:
         """mu of each contact whose friction has a part in its impacts: with a restitution, or under a declared law."""
         model = self.system.scope.model
-        rough = [c for c in model.contacts if c.unilateral and c.mu is not None and model.space == "plane"]
+        rough = [c for c in model.contacts if c.unilateral and c.mu is not None]
         declared = {
             c.name: self.system.scope.value(c.mu)
             for c in rough
@@ -357,35 +359,44 @@ class _Bodies:
         found = self._numbers(tuple(declared.values()), self._state(self._end)[None])[0] if declared else ()
         return dict(zip(declared, map(float, found), strict=True))
 
-    def _otherwise_than_in_steps(
-        self, name: str, rows: tuple[np.ndarray, np.ndarray], mu: float, early: np.ndarray, late: np.ndarray
-    ) -> str:
-        """Message if the law of impact in STEPS small steps of the normal impulse gives other speeds; "".
+    def _otherwise_by_iteration(self, early: np.ndarray, late: np.ndarray) -> str:
+        """Message if small steps of the impulse, of several contacts iterated impulses, give other speeds; "".
 
-        Of single impacts: of several, one after the other, momentum and energy are looked at alone.
+        Of several that are hit one after the other momentum and energy are looked at alone.
         """
         rules = self.system.scope.model.impact
-        touching = [other for other, own in self._rows.items() if self._touches(other, own)]
-        row, (n, t) = self._rows[name][0], rows
-        v_n, v_t = (self._rows_at((row,), early)[0][1], self._sliding_row(row, early)[1])
-        if len(touching) > 1 or v_n >= 0 or self._is_low(row, early, abs(v_n)):
+        names = [name for name, own in self._rows.items() if self._touches(name, own)]
+        found = [self._speeds_of(name, early) for name in names]
+        v, there = (np.concatenate([x for x, _ in each]) for each in (found, [self._speeds_of(n, late) for n in names]))
+        approach = {name: -float(x[0]) for name, (x, _) in zip(names, found, strict=True)}
+        low = (x > 0 and self._is_low(self._rows[name][0], early, x) for name, x in approach.items())
+        if any(low) or (len(names) > 1 and rules is not None and rules.order == "sequential"):
             return ""
-        law, e = "poisson" if rules is None or rules.law is None else rules.law, self._restitutions.get(name, 0.0)
-        found = stepped_impact(self._for_impulses(late, (n, t)), (v_n, v_t), mu, e, law)
-        there = (self._rows_at((row,), late)[0][1], self._sliding_row(row, late)[1])
-        if max(abs(a - b) for a, b in zip(found, there, strict=True)) > STEPPED * (abs(v_n) + abs(v_t)):
-            steps = f"by small steps {found[0]:.4g} and {found[1]:.4g}"
-            return f"'{name}' leaves with {there[0]:.4g} and slides with {there[1]:.4g} m/s, {steps}"
+        law = "poisson" if rules is None or rules.law is None else rules.law
+        kinds = [Touched(self._frictions.get(name, 0.0), self._restitutions.get(name, 0.0), len(x))
+                 for name, (x, _) in zip(names, found, strict=True)]  # fmt: skip
+        D = self._for_impulses(late, tuple(row for _, rows in found for row in rows))
+        due = after_impact(D, v, kinds, law)
+        if due is not None and np.max(np.abs(due - there)) > STEPPED * np.sum(np.abs(v)):
+            said, iterated = (", ".join(f"{x:.4g}" for x in each) for each in (there, due))
+            return f"{', '.join(names)}: normal and sliding speeds are {said} m/s, by iteration {iterated}"
         return ""
 
-    def _for_impulses(self, state: np.ndarray, rows: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
-        """Changes of (v_n, v_t) for unit impulses along n and t, the constraints held."""
+    def _speeds_of(self, name: str, state: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:
+        """((v_n, v_t) of a contact, the rows of these)."""
+        row = self._rows[name][0]
+        along = self._sliding_rows(row, state) if name in self._frictions else []
+        pairs = [*self._rows_at((row,), state), *along]
+        return np.array([v for _, v in pairs]), [J for J, _ in pairs]
+
+    def _for_impulses(self, state: np.ndarray, rows: tuple[np.ndarray, ...]) -> np.ndarray:
+        """Changes of (v_n, v_t) for unit impulses along n and the tangents, the constraints held."""
         n = len(self.system.symbols.u)
         units = self._momenta(state, [*np.eye(n), np.zeros(n)])
         held = np.array([J for J, _ in self._rows_at(self.system.constraints.closing, state)]).reshape(-1, n)
         matrix = np.block([[units[:-1] - units[-1], held.T], [held, np.zeros((len(held), len(held)))]])
         along = np.array(rows)
-        right = np.vstack([along.T, np.zeros((len(held), 2))])
+        right = np.vstack([along.T, np.zeros((len(held), len(rows)))])
         return np.asarray(along @ np.linalg.lstsq(matrix, right, rcond=None)[0][:n])
 
     @property
@@ -487,31 +498,6 @@ class _Bodies:
             Program.of(scalars, self.system.symbols, inputs=self.system.inputs), "numpy"
         )
         return function.many(self.after.start, x, self.after.model.p)
-
-
-def stepped_impact(D: np.ndarray, v: tuple[float, float], mu: float, e: float, law: str) -> tuple[float, float]:
-    """(v_n, v_t) after an impact, by small steps of the normal impulse and Coulomb's friction in each of them."""
-    step = -v[0] / D[0, 0] / STEPS
-    (v_n, v_t), p, W, compressed = v, 0.0, 0.0, None
-    for _ in range(MOST_STEPS):
-        slope = abs(D[0, 1]) + mu * D[1, 1]
-        sticking = float(np.clip(-(D[0, 1] + v_t / step) / D[1, 1], -mu, mu)) if D[1, 1] else 0.0
-        F = sticking if abs(v_t) <= slope * step else -mu * math.copysign(1.0, v_t)
-        change = D @ np.array([step, F * step])
-        W += (v_n + change[0] / 2) * step
-        v_n, v_t, p = v_n + float(change[0]), v_t + float(change[1]), p + step
-        if compressed is None and v_n >= 0:
-            compressed = p, W
-        if (
-            compressed is not None
-            and {
-                "newton": v_n >= -e * v[0],
-                "poisson": p >= (1 + e) * compressed[0],
-                "energetic": W >= (1 - e * e) * compressed[1],
-            }[law]
-        ):
-            break
-    return v_n, v_t
 
 
 # -------- friction laws ---------------------------------------------------------------------------------------

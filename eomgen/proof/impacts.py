@@ -7,8 +7,10 @@ the same jump by the law in numbers (complementarity) where it pushes
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import math
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property, partial
+from itertools import pairwise
 from random import Random
 from typing import Any
 
@@ -351,3 +353,134 @@ def struck(trial: Any, system: System, owner: str, axis: int | None = None) -> f
     if len(ending) != 1 or axis is None:
         raise NoValue("of constraints that hold there is no second way")
     return Struck(trial, system, ending[0]).of_joint(owner, axis)
+
+
+# -------- impacts that rub ------------------------------------------------------------------------------------
+# D, v of contacts -> speeds after them, by small steps of one impulse, or by impulses iterated one after the other
+
+
+STEPS, MOST_STEPS = 1000, 50_000  # of an impact that is followed in small steps
+PROJECTIONS = 40  # of the friction of one of them
+CORNERS = 64  # of the polygon around a circle of friction: 0.12 % beyond it
+SWEEPS = 5000  # over the contacts of one impact
+
+
+@dataclass(frozen=True)
+class Touched:
+    """A contact in an impact.
+
+    Args:
+        size: of its (v_n, v_t); 1: it does not rub.
+    """
+
+    mu: float
+    e: float
+    size: int
+
+
+def after_impact(D: np.ndarray, v: np.ndarray, contacts: Sequence[Touched], law: str) -> np.ndarray | None:
+    """The speeds (v_n, v_t) of contacts after an impact; None where there is no second way."""
+    first = np.cumsum([0, *(contact.size for contact in contacts)])
+    if len(contacts) == 1:
+        (own,) = contacts
+        return None if v[0] >= 0 or own.size < 2 else stepped_impact(D, v, own.mu, own.e, law)
+    blocks = [D[a:b, c:d] for a, b in pairwise(first) for c, d in pairwise(first)]
+    if law == "energetic" or max(first) > 2 * len(contacts) or any(not np.any(block) for block in blocks):
+        return None
+    if law == "newton":
+        normals = np.minimum(v[first[:-1]], 0.0) * [contact.e for contact in contacts]
+        p = _iterated(D, v, contacts, np.zeros(len(contacts)), normals)
+        return None if p is None else v + D @ p
+    none = np.zeros(len(contacts))
+    pressed = _iterated(D, v, contacts, none, none)
+    if pressed is None:
+        return None
+    returned = pressed[first[:-1]] * [contact.e for contact in contacts]
+    p = _iterated(D, v + D @ pressed, contacts, returned, none)
+    return None if p is None else v + D @ (pressed + p)
+
+
+def _iterated(
+    D: np.ndarray, v: np.ndarray, contacts: Sequence[Touched], given: np.ndarray, returns: np.ndarray
+) -> np.ndarray | None:
+    """Impulses with p_n >= given, |p_t| <= mu p_n that are the last of sweeps over the contacts; None: there is none.
+
+    p_n <- max(given, p_n - (v_n + returns)/D_nn),   p_t <- p_t - v_t/D_tt within the friction
+    """
+    p, now = np.zeros(len(v)), np.array(v, dtype=float)
+    size = float(np.max(np.abs(v), initial=0.0))
+    for _ in range(SWEEPS):
+        k, moved = 0, 0.0
+        for contact, least, returned in zip(contacts, given, returns, strict=True):
+            to = [max(least, p[k] - (now[k] + returned) / D[k, k])]
+            if contact.size > 1:
+                most = contact.mu * to[0]
+                to.append(min(max(p[k + 1] - now[k + 1] / D[k + 1, k + 1], -most), most))
+            for i, x in enumerate(to, k):
+                change, p[i] = D[:, i] * (x - p[i]), x
+                now = now + change
+                moved = max(moved, float(np.max(np.abs(change))))
+            k += contact.size
+        if moved <= tolerances.COMPUTED * size:
+            return p
+    return None
+
+
+def around(tangents: Sequence[np.ndarray]) -> Iterator[np.ndarray]:
+    """Directions t of friction whose cone n + mu t holds all that are allowed: in space the corners of a polygon."""
+    if len(tangents) == 1:
+        yield from (tangents[0], -tangents[0])
+        return
+    for k in range(CORNERS):
+        turned = 2 * math.pi * k / CORNERS
+        x, y = (part(turned) / math.cos(math.pi / CORNERS) for part in (math.cos, math.sin))
+        yield x * tangents[0] + y * tangents[1]
+
+
+def stepped_impact(D: np.ndarray, v: np.ndarray, mu: float, e: float, law: str) -> np.ndarray:
+    """(v_n, v_t) after an impact, by small steps of the normal impulse and Coulomb's friction in each of them.
+
+    Friction in a step is that which leaves the least energy at its end: min F^T D_tt F/2 + F^T (v_t/step + D_tn),
+    |F| <= mu, by projected steps from that of the step before.
+    """
+    rows, now = D.tolist(), np.array(v, dtype=float).tolist()
+    step, F = -now[0] / rows[0][0] / STEPS, [0.0] * (len(now) - 1)
+    p, W, compressed = 0.0, 0.0, None
+    stiffest = float(np.linalg.norm(D[1:, 1:], 2)) or 1.0
+    for _ in range(MOST_STEPS):
+        F = _least_energy(
+            [x / step + row[0] for x, row in zip(now[1:], rows[1:], strict=True)], rows, F, (mu, stiffest)
+        )
+        gained = [step * (row[0] + sum(d * f for d, f in zip(row[1:], F, strict=True))) for row in rows]
+        W += (now[0] + gained[0] / 2) * step
+        now, p = [x + change for x, change in zip(now, gained, strict=True)], p + step
+        if compressed is None and now[0] >= 0:
+            compressed = p, W
+        if (
+            compressed is not None
+            and {
+                "newton": now[0] >= -e * v[0],
+                "poisson": p >= (1 + e) * compressed[0],
+                "energetic": W >= (1 - e * e) * compressed[1],
+            }[law]
+        ):
+            break
+    return np.array(now)
+
+
+def _least_energy(
+    due: Sequence[float], D: Sequence[Sequence[float]], F: Sequence[float], of: tuple[float, float]
+) -> list[float]:
+    """min F^T D_tt F/2 + F^T due, |F| <= mu; along one direction at once, along two by projected steps from F."""
+    mu, stiffest = of
+    if len(F) == 1:
+        return [max(-mu, min(mu, -due[0] / D[1][1] if D[1][1] else 0.0))]
+    (x, y), ((_, xx, xy), (_, yx, yy)) = F, D[1:]
+    for _ in range(PROJECTIONS):
+        a, b = x - (due[0] + xx * x + xy * y) / stiffest, y - (due[1] + yx * x + yy * y) / stiffest
+        share = min(1.0, mu / max(math.hypot(a, b), tolerances.TINIEST))
+        a, b = a * share, b * share
+        moved, x, y = abs(a - x) + abs(b - y), a, b
+        if moved <= tolerances.COMPUTED:
+            break
+    return [x, y]

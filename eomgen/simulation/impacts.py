@@ -77,7 +77,8 @@ class WithoutContacts:
         for name, own in self.rows.items():
             of_contact[name], first = rows[first : first + len(own)], first + len(own)
         e, mu = self.restitutions, self._frictions
-        tangents = dict(zip((name for name in mu if not self._in_space), rows[first:], strict=True))
+        along = 2 if self._in_space else 1
+        tangents = {name: rows[first + along * i : first + along * (i + 1)] for i, name in enumerate(mu)}
         hits = [
             Hit(name, of_contact[name], e.get(name, 0.0), name in resting, mu.get(name, 0.0), tangents.get(name))
             for name in touching
@@ -164,7 +165,9 @@ class WithoutContacts:
         for name, values in after.impulses.items():
             rows = self.rows[name]
             found |= {name if k == 0 else f"{name} {rows[k].component}": float(x) for k, x in enumerate(values)}
-        found |= {f"{name} t": x for name, x in after.friction.items()}
+        for name, along in after.friction.items():
+            labels = [f"{name} t"] if len(along) == 1 else [f"{name} t{k + 1}" for k in range(len(along))]
+            found |= dict(zip(labels, along.tolist(), strict=True))
         return found | self.named_held(after.held.tolist())
 
     def named_held(self, impulses: Sequence[float]) -> dict[str, float]:
@@ -216,7 +219,7 @@ class WithoutContacts:
         values: dict[tuple[str, Any], float] = {
             (name, k): x for name, own in after.impulses.items() for k, x in enumerate(own.tolist())
         }
-        values |= {(name, "t"): x for name, x in after.friction.items()}
+        values |= {(name, f"t{k}"): x for name, own in after.friction.items() for k, x in enumerate(own.tolist())}
         values |= {(row.constraint, row): x for row, x in zip(closing, after.held.tolist(), strict=True)}
         known = {id(pushed): values.get(key, 0.0) for key, pushed in self._pushing}
         unknown = [tuple(pushed) for _, pushed in self._pushing if not np.isfinite(known[id(pushed)])]
@@ -227,20 +230,21 @@ class WithoutContacts:
     @property
     def _pushing(self) -> list[tuple[tuple[str, Any], dict[str, Wrench]]]:
         """((whose, which of its rows), the wrench on each body for a unit of its impulse)."""
-        closing, rough = self.system.constraints.closing, () if self._in_space else self.rough
+        closing, along = self.system.constraints.closing, range(2 if self._in_space else 1)
         found: list[tuple[tuple[str, Any], dict[str, Wrench]]] = self._once(
             "pushing",
             lambda: [
                 *(((row.constraint, row), _summed(row.wrenches)) for row in closing),
                 *(((name, k), _summed(row.wrenches)) for name, own in self.rows.items() for k, row in enumerate(own)),
-                *(((contact.name, "t"), self._along(contact.name)) for contact in rough),
+                *(((contact.name, f"t{k}"), self._along(contact.name, k)) for contact in self.rough for k in along),
             ],
         )
         return found
 
-    def _along(self, contact: str) -> dict[str, Wrench]:
-        """The wrench on each body for a unit of the impulse along the tangent of a contact."""
-        pushed = (self.system.motion.body_wrench(push) for push in self.rows[contact][0].tangent)
+    def _along(self, contact: str, k: int) -> dict[str, Wrench]:
+        """The wrench on each body for a unit of the impulse along one tangent of a contact."""
+        row = self.rows[contact][0]
+        pushed = (self.system.motion.body_wrench(push) for push in (row.tangent, row.cross_tangent)[k])
         return _summed([each for each in pushed if each is not None])
 
     @property
@@ -348,7 +352,8 @@ class WithoutContacts:
         """M, the rows (J, sigma) of the constraints that stay, of the contacts, and of sliding velocities."""
         M = tuple(x for row in assembled_by_recursion(self.system).M for x in row)
         rows = (*self.system.constraints.closing, *(row for own in self.rows.values() for row in own))
-        tangents = [] if self._in_space else [self.rows[contact.name][0].sliding for contact in self.rough]
+        touched = (self.rows[contact.name][0] for contact in self.rough)
+        tangents = [v for row in touched for v in (row.sliding, row.across) if v is not None]
         return (*M, *self._with_bias([*(row.velocity for row in rows), *tangents]))
 
     def _with_bias(self, velocities: Sequence[Scalar]) -> list[Scalar]:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import functools
 import math
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
 import sympy
+from scipy.integrate import solve_ivp
 from scipy.optimize import nnls
 
 import eomgen
@@ -16,8 +18,9 @@ from eomgen.errors import DerivationError, EomgenError, ModelError, UsageError
 from eomgen.judge.case import Case
 from eomgen.judge.judge import Judge
 from eomgen.mechanics.impacts import Hit, ImpactLaw, Jump
-from eomgen.mechanics.impacts.law import lemke, routh
-from eomgen.proof.contact_phases import stepped_impact
+from eomgen.mechanics.impacts.friction import Rubbing, alone, leaving
+from eomgen.mechanics.impacts.law import lemke
+from eomgen.proof.impacts import Touched, after_impact, stepped_impact
 from eomgen.results import impact
 from eomgen.simulation.result import Trajectory
 from eomgen.study.checked import checked_model
@@ -305,12 +308,12 @@ constraints.wire = { kind = "link", points = ["ball.origin", "O"], length = "l",
 # -- friction, other laws, one after the other -----------------------------------------------------
 
 
-def random_rod(rng: np.random.Generator) -> tuple[np.ndarray, tuple[float, float], float, float]:
+def random_rod(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, float, float]:
     """D of the end of a rod m = l = 1 at a random angle, (v_n, v_t), mu, e."""
     phi = rng.uniform(0, 2 * math.pi)
     x, y = math.cos(phi) / 2, math.sin(phi) / 2
     D = np.array([[1 + 12 * x * x, -12 * x * y], [-12 * x * y, 1 + 12 * y * y]])
-    return D, (-rng.uniform(0, 1), rng.uniform(-1, 1)), rng.uniform(0, 1.2), rng.uniform(0, 1)
+    return D, np.array([-rng.uniform(0, 1), rng.uniform(-1, 1)]), rng.uniform(0, 1.2), rng.uniform(0, 1)
 
 
 def test_with_friction_newton_can_gain_energy_and_poisson_and_stronge_never_do():
@@ -319,7 +322,7 @@ def test_with_friction_newton_can_gain_energy_and_poisson_and_stronge_never_do()
     for _ in range(2000):
         D, v, mu, e = random_rod(rng)
         for law in gained:
-            p = np.array(routh(D, v, mu=mu, e=e, law=law))
+            p = alone(D, v, Rubbing("tip", mu, e), law)
             gained[law] += bool(v @ p + p @ D @ p / 2 > 1e-12)
             assert abs(p[1]) <= mu * p[0] + 1e-12 and (v + D @ p)[0] >= -1e-12
     assert gained["newton"] > 10 and gained["poisson"] == gained["energetic"] == 0
@@ -330,7 +333,7 @@ def test_all_laws_are_one_where_nothing_slides_the_other_way_or_sticks():
     rng = np.random.default_rng(4)
     for _ in range(100):
         D, v, _, e = random_rod(rng)
-        p = [routh(D, v, mu=0.0, e=e, law=law)[0] for law in ("newton", "poisson", "energetic")]
+        p = [alone(D, v, Rubbing("tip", 0.0, e), law)[0] for law in ("newton", "poisson", "energetic")]
         assert p == pytest.approx([-(1 + e) * v[0] / D[0, 0]] * 3)
 
 
@@ -340,16 +343,179 @@ def test_the_impulses_grow_as_small_steps_of_coulombs_law_say():
     for _ in range(60):
         D, v, mu, e = random_rod(rng)
         for law in ("newton", "poisson", "energetic"):
-            after = v + D @ np.array(routh(D, v, mu=mu, e=e, law=law))
+            after = v + D @ alone(D, v, Rubbing("tip", mu, e), law)
             assert after == pytest.approx(stepped_impact(D, v, mu, e, law), abs=0.01 * (abs(v[0]) + abs(v[1])))
+
+
+def random_tip(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    """(D of a point r of a random body in space, M^-1 - [r] I^-1 [r], its velocity)."""
+    x, y, z = rng.normal(size=3) / 2
+    r = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    Q = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    D = np.eye(3) - r @ Q @ np.diag(1 / rng.uniform(0.05, 0.3, size=3)) @ Q.T @ r
+    return D, np.array([-rng.uniform(0.1, 1), *rng.normal(size=2)])
+
+
+def test_in_space_the_impulses_grow_as_small_steps_of_coulombs_law_say():
+    """|p_t| <= mu p_n, v_n >= 0, no energy gained; the speeds within 1 % of small steps."""
+    rng = np.random.default_rng(12)
+    for k in range(120):
+        D, v = random_tip(rng)
+        mu, e, law = rng.uniform(0, 1), rng.uniform(0, 1), ("poisson", "energetic")[k % 2]
+        p = alone(D, v, Rubbing("tip", mu, e, 3), law)
+        assert np.linalg.norm(p[1:]) <= mu * p[0] + 1e-12 and (v + D @ p)[0] >= -1e-12
+        assert v @ p + p @ D @ p / 2 <= 1e-12
+        if k < 12:
+            assert v + D @ p == pytest.approx(stepped_impact(D, v, mu, e, law), abs=0.01 * np.abs(v).sum())
+
+
+def test_in_space_the_velocity_turns_while_it_slides():
+    """dv_t/dp = D_tn - mu D_tt v_t/|v_t|, by an integration in p itself: to 1e-10 where it never stops."""
+    rng, count = np.random.default_rng(13), 0
+    while count < 5:
+        (D, v), mu, e = random_tip(rng), 0.2, 0.5
+        v[1:] *= 4
+        p = alone(D, v, Rubbing("tip", mu, e, 3))
+        slides = solve_ivp(
+            lambda _, y, D=D, mu=mu: D @ [1, *(-mu * y[1:] / np.linalg.norm(y[1:]))],
+            (0, p[0]),
+            v,
+            rtol=1e-12,
+            atol=1e-13,
+        )
+        if np.min(np.linalg.norm(slides.y[1:], axis=0)) > 0.1:
+            assert slides.y[:, -1] == pytest.approx(v + D @ p, abs=1e-10)
+            count += 1
+
+
+def test_what_cannot_stick_leaves_along_the_one_direction_that_stays():
+    """D_tn - mu D_tt s = k s, k > 0, |s| = 1; of a plane in space it is that of the plane."""
+    rng, found = np.random.default_rng(14), 0
+    for _ in range(100):
+        D, _ = random_tip(rng)
+        sticks, mu = float(np.linalg.norm(np.linalg.solve(D[1:, 1:], D[1:, 0]))), 0.1
+        if sticks > mu:
+            s, found = leaving(D, mu), found + 1
+            stays = D[1:, 0] - mu * D[1:, 1:] @ s
+            assert stays == pytest.approx((stays @ s) * s, abs=1e-12) and stays @ s > 0
+    assert found > 50
+
+
+def random_feet(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, list[Hit], np.ndarray]:
+    """(M, no constraints, two points of a body in the plane on floor and slope, speeds that are kept apart from 0)."""
+    e, hits = float(rng.uniform(0, 1)), []
+    for name in ("a", "b"):
+        (x, y), turned = rng.normal(size=2), rng.uniform(-0.5, 0.5)
+        c, s = math.cos(turned), math.sin(turned)
+        n, t = np.array([[-s, c, x * c + y * s, 0], [c, s, x * s - y * c, 0]])
+        hits.append(Hit(name, n[None], e, False, float(rng.uniform(0.05, 0.5)), t[None]))
+    return np.diag([1.0, 1, rng.uniform(0.1, 0.5)]), np.zeros((0, 4)), hits, rng.normal(size=3)
+
+
+def test_two_feet_that_rub_leave_by_momentum_coulombs_cone_and_one_of_their_ways():
+    """M (u+ - u-) = J^T Lam, |Lam_t| <= mu Lam_n, v_n+ >= 0, T+ <= T-; e = 0: friction against what slides on."""
+    rng, ways = np.random.default_rng(15), []
+    for k in range(150):
+        M, held, hits, u = random_feet(rng)
+        hits = [replace(hit, e=0.0) for hit in hits] if k % 2 else hits
+        try:
+            after = Jump.of(M, held, hits, u, ImpactLaw("poisson"))
+        except DerivationError as error:
+            ways.append(error.what)
+            continue
+        assert after.u @ M @ after.u <= u @ M @ u * (1 + 1e-12)
+        gained = M @ (after.u - u)
+        sure = np.all(np.isfinite([*after.impulses.values(), *after.friction.values()]))
+        for hit in hits if sure else ():
+            n, t = after.impulses[hit.name][0], after.friction[hit.name][0]
+            gained = gained - hit.rows[0, :-1] * n - hit.tangents[0, :-1] * t
+            slides = float(hit.tangents[0, :-1] @ after.u)
+            assert n >= -1e-9 and abs(t) <= hit.mu * n + 1e-9 and hit.speed(after.u) >= -1e-9
+            assert hit.e or n * hit.speed(after.u) == pytest.approx(0, abs=1e-9)
+            assert hit.e or abs(slides) < 1e-9 or t == pytest.approx(-math.copysign(hit.mu * n, slides), abs=1e-9)
+        assert not sure or gained == pytest.approx(np.zeros(3), abs=1e-9)
+        assert all(hit.speed(after.u) >= -1e-9 for hit in hits)
+    assert len(ways) < 15 and all("ways for the impact" in each or "single value" in each for each in ways)
+
+
+def test_impulses_iterated_contact_by_contact_give_the_same_jump():
+    """p_n and p_t of each contact in turn, until they stay: another way than trying all modes."""
+    rng, compared = np.random.default_rng(19), 0
+    for k in range(60):
+        M, held, hits, u = random_feet(rng)
+        rows = np.vstack([each[:, :-1] for hit in hits for each in (hit.rows, hit.tangents)])
+        law, D = ("poisson", "newton")[k % 2], rows @ np.linalg.solve(M, rows.T)
+        due = after_impact(D, rows @ u, [Touched(hit.mu, hit.e, 2) for hit in hits], law)
+        try:
+            after = Jump.of(M, held, hits, u, ImpactLaw(law))
+        except DerivationError:
+            continue
+        if due is not None:
+            compared += 1
+            assert rows @ after.u == pytest.approx(due, abs=1e-6)
+    assert compared > 40
+
+
+def test_contacts_that_do_not_act_on_one_another_have_each_an_impact_of_its_own():
+    """Two bodies: each leaves as it does alone, by the whole graph of Routh."""
+    rng = np.random.default_rng(16)
+    for _ in range(20):
+        M, _, hits, u = random_feet(rng)
+        law = ImpactLaw("poisson")
+        single = [Jump.of(M, np.zeros((0, 4)), [hit], u, law).u for hit in hits]
+        padded = []
+        for k, hit in enumerate(hits):
+            rows, tangents = (
+                np.insert(each, 0 if k else 3, np.zeros((3, 1)), axis=1) for each in (hit.rows, hit.tangents)
+            )
+            padded.append(replace(hit, rows=rows, tangents=tangents))
+        both = Jump.of(np.kron(np.eye(2), M), np.zeros((0, 7)), padded, np.tile(u, 2), law)
+        assert both.u == pytest.approx(np.concatenate(single), abs=1e-12)
+
+
+def test_friction_of_two_feet_that_stick_has_no_single_impulses_and_one_sum():
+    """A block falls on both corners and sticks: u+ = 0, m v_x = sum of the two."""
+    hits = [
+        Hit(name, rows_of(f"0 1 {x} 0"), 0.0, False, 0.9, rows_of("1 0 0.5 0")) for name, x in (("a", -1), ("b", 1))
+    ]
+    after = Jump.of(np.diag([2.0, 2, 1]), np.zeros((0, 4)), hits, np.array([0.3, -1, 0]))
+    assert after.u == pytest.approx(np.zeros(3), abs=1e-12)
+    assert np.isnan(after.friction["a"][0]) and after.impulses["a"][0] + after.impulses["b"][0] == pytest.approx(2)
+
+
+def test_where_friction_leaves_several_ways_they_are_named():
+    """A body between two walls that rub so much that it may wedge, or not."""
+    rng = np.random.default_rng(17)
+    for _ in range(400):
+        M, held, hits, u = random_feet(rng)
+        try:
+            Jump.of(M, held, [replace(hit, mu=0.8) for hit in hits], u, ImpactLaw("poisson"))
+        except DerivationError as error:
+            if "ways for the impact" in error.what:
+                assert "'a' sticks" in error.what and "; or " in error.what
+                return
+    raise AssertionError("none of them has several ways")
+
+
+def test_by_newtons_law_what_would_gain_energy_is_refused():
+    rng, refused = np.random.default_rng(18), 0
+    for _ in range(200):
+        M, held, hits, u = random_feet(rng)
+        try:
+            after = Jump.of(M, held, [replace(hit, e=0.9) for hit in hits[:1]], u, ImpactLaw("newton"))
+            assert after.u @ M @ after.u <= u @ M @ u * (1 + 1e-7)
+        except DerivationError as error:
+            assert "by Newton's law with friction the impact of 'a' gains" in error.what
+            refused += 1
+    assert refused
 
 
 def test_an_impact_with_much_friction_jams_and_is_named():
     """Painleve: 1/m + (x^2 - mu |x y|)/I < 0, and v_t grows: no impulse ends the approach."""
     D = np.array([[1.0, -0.9], [-0.9, 1.0]])
     with pytest.raises(DerivationError, match="'tip' jams in its impact"):
-        routh(np.array([[1.0, 2.0], [2.0, 1.0]]), (-1.0, 1.0), mu=0.6, e=0.5, name="tip")
-    assert routh(D, (-1.0, 0.0), mu=0.2, e=0.0)[0] > 0
+        alone(np.array([[1.0, 2.0], [2.0, 1.0]]), np.array([-1.0, 1.0]), Rubbing("tip", 0.6, 0.5))
+    assert alone(D, np.array([-1.0, 0.0]), Rubbing("tip", 0.2, 0.0))[0] > 0
 
 
 @pytest.mark.slow
@@ -360,7 +526,7 @@ def test_a_rough_dumbbell_leaves_the_floor_as_each_law_says(law):
     result = run(text.replace("x = {}", "x = { speed = -1 }"), 0.46)
     x, y = -math.cos(0.5) / 2, -math.sin(0.5) / 2
     D = np.array([[0.5 + x * x / 0.5, -x * y / 0.5], [-x * y / 0.5, 0.5 + y * y / 0.5]])
-    p = routh(D, (-math.sqrt(2 * G), -1.0), mu=0.3, e=0.5, law=law)
+    p = alone(D, np.array([-math.sqrt(2 * G), -1.0]), Rubbing("tip", 0.3, 0.5), law)
     impulses = result.impacts[0].impulses
     assert (impulses["floor"], impulses["floor t"]) == pytest.approx(p, rel=1e-8)
     assert result.certify().ok
@@ -506,16 +672,27 @@ def test_a_restitution_that_gains_energy_is_refused():
             raise DerivationError(result.message)
 
 
-def test_friction_at_several_contacts_at_once_and_in_space_is_refused():
-    rough = Hit("a", np.array([[0.0, 1, 0]]), 0.5, False, 0.3, np.array([1.0, 0, 0]))
-    other = Hit("b", np.array([[1.0, 0, 0]]), 0.5)
-    with pytest.raises(DerivationError, match="several contacts at once"):
-        Jump.of(np.eye(2), np.zeros((0, 3)), [rough, other], np.array([-1.0, -1]))
-    with pytest.raises(DerivationError, match="in space"):
-        Jump.of(np.eye(2), np.zeros((0, 3)), [Hit("a", rough.rows, 0.5, False, 0.3)], np.array([-1.0, -1]))
-    both = [other, Hit("c", rough.rows, 0.5)]
+def rows_of(text: str) -> np.ndarray:
+    """Rows of numbers, one a line."""
+    return np.array([[float(x) for x in line.split()] for line in text.split(";")])
+
+
+def test_impacts_that_rub_where_no_law_is_sure_are_refused():
+    """Several in space, three that rub by Stronge's law, one that rolls beside one that slides."""
+    e, flat = 0.5, np.zeros((0, 4))
+    a = Hit("a", rows_of("0 0 1 0"), e, False, 0.3, rows_of("1 0 0 0; 0 1 0 0"))
+    b = Hit("b", rows_of("1 0 1 0"), e, False, 0.3, rows_of("0 0 1 0; 0 1 0 0"))
+    u = np.array([-1.0, 0.5, -1])
+    with pytest.raises(DerivationError, match="several contacts at once in space"):
+        Jump.of(np.eye(3), flat, [a, b], u)
+    c, d = (Hit(name, rows_of(f"0 1 {x} 0"), e, False, 0.3, rows_of("1 0 0.5 0")) for name, x in (("c", 1), ("d", -1)))
     with pytest.raises(DerivationError, match="the energetic law is one of single contacts"):
-        Jump.of(np.eye(2), np.zeros((0, 3)), both, np.array([-1.0, -1]), ImpactLaw("energetic"))
+        Jump.of(np.eye(3), flat, [c, d], -np.ones(3), ImpactLaw("energetic"))
+    with pytest.raises(DerivationError, match="'d' rolls, and friction has a part"):
+        Jump.of(np.eye(3), flat, [c, Hit("d", rows_of("0 1 1 0; 1 0 0 0"), e)], -np.ones(3))
+    both = [Hit("c", c.rows, e), Hit("d", d.rows, e)]
+    with pytest.raises(DerivationError, match="the energetic law is one of single contacts"):
+        Jump.of(np.eye(3), flat, both, -np.ones(3), ImpactLaw("energetic"))
 
 
 def test_an_impact_is_asked_of_a_contact_that_can_close():

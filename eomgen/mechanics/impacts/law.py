@@ -14,7 +14,6 @@ Source: Moreau, Unilateral contact and dry friction in finite freedom dynamics (
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import field, replace
 from itertools import combinations
@@ -24,6 +23,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
+from eomgen.mechanics.impacts.friction import ENERGETIC, NEWTON, POISSON, Rubbing, alone, together
 from eomgen.symbolic.numeric import tolerances
 
 MOST_PIVOTS = 1000  # of a complementarity problem
@@ -40,7 +40,7 @@ class Hit:
         e: its coefficient of restitution.
         rests: it comes to rest here, as it would after bounces without end: all of its rows hold.
         mu: of its friction in the impact; 0: none.
-        tangent: (J, sigma) of the sliding velocity, n + 1; None: it has none.
+        tangents: (J, sigma) of the sliding velocities, one in the plane, in space two; None: it has none.
     """
 
     name: str
@@ -48,7 +48,7 @@ class Hit:
     e: float = 0.0
     rests: bool = False
     mu: float = 0.0
-    tangent: np.ndarray | None = None
+    tangents: np.ndarray | None = None
 
     def speed(self, u: np.ndarray) -> float:
         """v = J u + sigma of the first row; negative where it is approached."""
@@ -63,13 +63,13 @@ class Jump:
         u: the speeds after it.
         impulses: of each contact that touches its rows' impulses; nan where one has no single value.
         held: those of the constraints' rows.
-        friction: of each contact with friction the impulse along its tangent.
+        friction: of each contact with friction the impulses along its tangents.
     """
 
     u: np.ndarray
     impulses: dict[str, np.ndarray] = field(default_factory=dict)
     held: np.ndarray = field(default_factory=lambda: np.zeros(0))
-    friction: dict[str, float] = field(default_factory=dict)
+    friction: dict[str, np.ndarray] = field(default_factory=dict)
 
     @staticmethod
     def of(
@@ -99,7 +99,6 @@ class Jump:
         return _compressed(M, held, touching, u)
 
 
-NEWTON, POISSON, ENERGETIC = "newton", "poisson", "energetic"
 SIMULTANEOUS, SEQUENTIAL = "simultaneous", "sequential"
 
 
@@ -169,7 +168,7 @@ def _sequence(M: np.ndarray, held: np.ndarray, touching: Sequence[Hit], u: np.nd
     """The jump where of contacts approached equally fast the first (1) or the last (-1) is hit."""
     size = _size(u)
     impulses = {hit.name: np.zeros(len(hit.rows)) for hit in touching}
-    friction = {hit.name: 0.0 for hit in touching if hit.mu}
+    friction = {hit.name: np.zeros(0 if hit.tangents is None else len(hit.tangents)) for hit in touching if hit.mu}
     of_held, resting = np.zeros(len(held)), [hit for hit in touching if hit.rests]
     now, others = (_at_once(M, held, resting, u).u if resting else u), [hit for hit in touching if not hit.rests]
     for _ in range(MOST_IMPACTS):
@@ -183,7 +182,7 @@ def _sequence(M: np.ndarray, held: np.ndarray, touching: Sequence[Hit], u: np.nd
         now, of_held = after.u, of_held + after.held
         impulses[hit.name] = impulses[hit.name] + after.impulses[hit.name]
         for name, x in after.friction.items():
-            friction[name] += x
+            friction[name] = friction[name] + x
     raise DerivationError(
         f"after {MOST_IMPACTS} impacts at one instant {_names(touching)} are still approached",
         "impact",
@@ -373,131 +372,77 @@ def _solved(table: np.ndarray, basis: list[int]) -> np.ndarray:
 
 
 # -------- friction --------------------------------------------------------------------------------------------
-# One contact with friction in the plane: the impulses grow from 0, the normal one p steadily (Routh's graph).
-#
-#     v_n' = D_nn + D_nt F,   v_t' = D_nt + D_tt F       by p, D = [n; t] M^-1 [n; t]^T
-#     slides:  F = - mu sign(v_t)       sticks:  F = - D_nt/D_tt where |D_nt/D_tt| <= mu
-#
-# Compression ends where v_n = 0. Restitution ends, with e, where
-#
-#     Newton  v_n = - e v_n(0)     Poisson  p = (1 + e) p_c     Stronge  W = W_c - e^2 W_c,   W = integral of v_n dp
-#
-# Source: Routh, Dynamics of a System of Rigid Bodies, Elementary Part (1905), art. 187-198; Stronge, Impact Mechanics
-# (2000), ch. 8.
-
-
-@dataclass(frozen=True)
-class Piece:
-    """A stretch of an impact in which friction stays the same: v_n, v_t at its begin, their slopes by p, and F."""
-
-    v: tuple[float, float]
-    slope: tuple[float, float]
-    F: float
-    p: float
+# Contacts that rub -> their jump: those that act on one another together, any other alone.
 
 
 def _rough(M: np.ndarray, held: np.ndarray, touching: Sequence[Hit], u: np.ndarray, law: str) -> Jump:
-    """The jump of one contact with friction.
+    """The jump where friction has a part.
 
     Raises:
-        DerivationError: others touch, it is in space, or it jams.
+        DerivationError: a law says nothing on it, or more than one thing, it jams, or it gains energy.
     """
     moving = [hit for hit in touching if not hit.rests]
-    if len(moving) > 1:
+    tied = [hit for hit in moving if len(hit.rows) > 1]
+    if tied:
         raise DerivationError(
-            f"friction in an impact of several contacts at once ({_names(moving)}) is not derived",
+            f"{_names(tied)} rolls, and friction has a part in the same impact: that is not derived",
             "impact",
-            'order = "sequential", or no restitution and no friction of them',
-        )
-    (hit,) = moving
-    if hit.tangent is None:
-        raise DerivationError(
-            f"friction in an impact in space ('{hit.name}') is not derived",
-            f"constraints.{hit.name}",
-            "leave out its restitution and [impact]: then friction has no part in impacts",
+            'order = "sequential", or `slip = true` with a friction',
         )
     space = _Space.of(M, np.vstack([held, *(h.rows for h in touching if h.rests)]).reshape(-1, len(u) + 1), u)
-    rows = np.array([hit.rows[0], hit.tangent])
-    A_H = space.whitened(space.held)
+    rows = [np.vstack([hit.rows, *([hit.tangents] if hit.tangents is not None else [])]) for hit in moving]
+    first = np.cumsum([0, *map(len, rows)])
+    whole = np.vstack(rows)
+    A_H, free = space.whitened(space.held), space.whitened(whole)
     back, w = _inverse(A_H), space.L.T @ u
     w = w - back @ (A_H @ w + space.held[:, -1])
-    A = space.whitened(rows) @ (np.eye(len(u)) - back @ A_H)
-    v = A @ w + rows[:, -1]
-    p = routh(A @ A.T, (float(v[0]), float(v[1])), mu=hit.mu, e=hit.e, law=law, name=hit.name)
-    after = w + A.T @ np.array(p)
-    of_held = back.T @ (after - space.L.T @ u - space.whitened(rows).T @ np.array(p))
+    A = free @ (np.eye(len(u)) - back @ A_H)
+    D, v = A @ A.T, A @ w + whole[:, -1]
+    p, sure = np.zeros(len(v)), np.ones(len(v), dtype=bool)
+    for own in _acting_together(D, first):
+        places = np.concatenate([np.arange(first[k], first[k + 1]) for k in own])
+        contacts = [Rubbing(moving[k].name, moving[k].mu, moving[k].e, len(rows[k])) for k in own]
+        if len(own) > 1:
+            p[places], sure[places] = together(D[np.ix_(places, places)], v[places], contacts, law)
+        else:
+            p[places] = alone(D[np.ix_(places, places)], v[places], contacts[0], law)
+    after = w + A.T @ p
+    if not np.any(whole[:, -1]) and not np.any(space.held[:, -1]):
+        _refuse_gain(float(after @ after - w @ w) / 2, float(w @ w) / 2, touching, law)
+    of_held = back.T @ (after - space.L.T @ u - free.T @ p)
     of_held[~_determined(A_H)] = np.nan
+    p[~sure] = np.nan
     found = np.linalg.solve(space.L.T, after)
-    others = {h.name: np.full(len(h.rows), np.nan) for h in touching if h.rests}
-    return Jump(found, {**others, hit.name: np.array([p[0]])}, of_held[: len(held)], {hit.name: p[1]})
+    impulses = {h.name: np.full(len(h.rows), np.nan) for h in touching if h.rests}
+    friction: dict[str, np.ndarray] = {}
+    for hit, k, end in zip(moving, first, first[1:], strict=False):
+        impulses[hit.name] = p[k : k + 1]
+        friction |= {hit.name: p[k + 1 : end]} if hit.mu else {}
+    return Jump(found, impulses, of_held[: len(held)], friction)
 
 
-def routh(
-    D: np.ndarray, v: tuple[float, float], *, mu: float, e: float, law: str = POISSON, name: str = ""
-) -> tuple[float, float]:
-    """(normal impulse, tangential impulse) of an impact with friction in the plane.
+def _acting_together(D: np.ndarray, first: np.ndarray) -> Iterator[list[int]]:
+    """The contacts in groups: an impulse at one of a group changes no speed of another group's."""
+    n = len(first) - 1
+    scale = np.sqrt(np.maximum(np.diag(D), tolerances.TINIEST))
+    acts = np.abs(D / np.outer(scale, scale)) > tolerances.COMPUTED
+    left = set(range(n))
+    while left:
+        own, new = set[int](), {min(left)}
+        while new:
+            own |= new
+            blocks = ((j, acts[first[k] : first[k + 1], first[j] : first[j + 1]]) for k in new for j in left - own)
+            new = {j for j, block in blocks if np.any(block)}
+        left -= own
+        yield sorted(own)
 
-    Args:
-        D: 2 x 2, of the speeds (v_n, v_t) for unit impulses [1/kg].
-        v: v_n < 0 and v_t before.
-        name: of the contact, for messages.
+
+def _refuse_gain(gained: float, before: float, touching: Sequence[Hit], law: str) -> None:
+    """Refuses an impact against what is at rest that gains kinetic energy [J].
+
     Raises:
-        DerivationError: it jams: no impulse ends the compression, or the restitution.
+        DerivationError: it does.
     """
-    if v[0] >= 0:
-        return 0.0, 0.0
-    p, p_t, W, p_c, W_c = 0.0, 0.0, 0.0, math.nan, math.nan
-    begun = v[0]
-    for _ in range(MOST_PIECES):
-        F, slope = _sliding(D, v[1], mu)
-        to_stick = -v[1] / slope[1] if v[1] * slope[1] < 0 else math.inf
-        if math.isnan(p_c):
-            to_rest = -v[0] / slope[0] if slope[0] > 0 else math.inf
-            end = min(to_rest, to_stick)
-        else:
-            end = min(_left(law, e, begun=begun, v=v[0], slope=slope[0], p=(p, p_c), W=(W, W_c)), to_stick)
-        if not math.isfinite(end):
-            what = f"'{name}' jams in its impact: with mu = {mu:.4g} no impulse ends the approach"
-            raise DerivationError(what, f"constraints.{name}", "less friction, or another position (Painleve)")
-        W += v[0] * end + slope[0] * end * end / 2
-        v_n, v_t = v[0] + slope[0] * end, v[1] + slope[1] * end
-        p, p_t = p + end, p_t + F * end
-        if end == to_stick:
-            v = (v_n, 0.0)
-        elif math.isnan(p_c):
-            v, p_c, W_c = (0.0, v_t), p, W
-        else:
-            return p, p_t
-        if e == 0 and not math.isnan(p_c):
-            return p, p_t
-    raise DerivationError(f"the impact of '{name}' does not end", f"constraints.{name}", "another restitution")
-
-
-MOST_PIECES = 20  # of an impact with friction: compression, sliding, sticking, sliding back, restitution
-
-
-def _sliding(D: np.ndarray, v_t: float, mu: float) -> tuple[float, tuple[float, float]]:
-    """(F, slopes of v_n and v_t by p) with friction F for a unit of the normal impulse."""
-    nn, nt, tt = float(D[0, 0]), float(D[0, 1]), float(D[1, 1])
-    if v_t == 0 and abs(nt) <= mu * tt:
-        F = -nt / tt if tt else 0.0
-        return F, (nn + nt * F, 0.0)
-    sense = math.copysign(1.0, v_t if v_t else nt)
-    F = -mu * sense
-    return F, (nn + nt * F, nt + tt * F)
-
-
-def _left(
-    law: str, e: float, *, begun: float, v: float, slope: float, p: tuple[float, float], W: tuple[float, float]
-) -> float:
-    """Normal impulse that is left to the end of the restitution; inf where the law is not met with these slopes."""
-    if law == POISSON:
-        return (1 + e) * p[1] - p[0]
-    if law == NEWTON:
-        return (-e * begun - v) / slope if slope > 0 else math.inf
-    missing = W[1] * (1 - e * e) - W[0]  # v x + slope x^2/2 = missing, the first root above 0
-    discriminant = v * v + 2 * slope * missing
-    if discriminant < 0 or missing < 0:
-        return 0.0 if missing < 0 else math.inf
-    root = math.sqrt(discriminant)
-    return 2 * missing / (v + root) if v + root > 0 else math.inf
+    if gained > tolerances.CARRIED * before:
+        what = f"by {law.capitalize()}'s law with friction the impact of {_names(touching)} gains {gained:.3g} J"
+        raise DerivationError(what, "impact", 'law = "poisson" or order = "sequential"')
