@@ -193,7 +193,7 @@ def four_figures(value: float) -> str:
 
 
 # -------- plots -----------------------------------------------------------------------------------------------
-# Trajectory -> a picture of it: coordinates over time, one panel a unit, the error of the energy, reactions.
+# Trajectory -> a picture of it: coordinates and states over time, one panel a unit, the error of the energy, reactions.
 
 
 PLAIN = Unit("")
@@ -205,20 +205,20 @@ DASHES = {"x": "-", "y": "--", "z": ":", "n": "-", "t": "-.", "s": ":", "tension
 
 
 def over_time(trajectory: Trajectory, title: str, units: Mapping[str, Unit]) -> Picture:
-    """Coordinates over time, one panel a unit, the error of the energy, reactions.
+    """Coordinates over time, one panel a unit, states of first order alike, the error of the energy, reactions.
 
     Args:
         title: above the picture, the model's name.
-        units: of the coordinates by name, in which they are drawn; absent: SI, and none is printed.
+        units: of coordinates and states by name, in which they are drawn; absent: SI, and none is printed.
     """
-    groups = by_unit(trajectory, units)
+    groups = [*by_unit(trajectory.coordinates, units).items(), *by_unit(trajectory.states, units).items()]
     reactions = reactions_by_unit(trajectory)
     count = len(groups) + (trajectory.energy is not None) + len(reactions)
 
     def fill(figure: Any) -> None:
         panels = figure.subplots(max(count, 1), 1, sharex=True, squeeze=False)[:, 0]
-        for panel, (unit, names) in zip(panels, groups.items(), strict=False):
-            _coordinates(panel, trajectory, names, unit)
+        for panel, (unit, names) in zip(panels, groups, strict=False):
+            _of_state(panel, trajectory, names, unit)
         if trajectory.energy is not None:
             _energy(panels[len(groups)], trajectory)
         for panel, (kind, alike) in zip(panels[count - len(reactions) :], reactions.items(), strict=False):
@@ -262,12 +262,17 @@ def outputs_over_time(trajectory: Trajectory, title: str, units: Mapping[str, Un
     return Picture((8, 1.0 + 2.1 * len(groups)), fill, title)
 
 
+def _model_of(run: Trajectory) -> Model | None:
+    """The model whose motion it is; None where the run has none."""
+    known = run.phases[0].model if run.phases else None
+    return None if known is None else known.declared.scope.model
+
+
 def notation_of_run(run: Trajectory) -> Notation:
     """Notation that the model of a run declares, for its outputs too; the default where the run has no model."""
-    known = run.phases[0].model if run.phases else None
-    if known is None:
+    model = _model_of(run)
+    if model is None:
         return Notation()
-    model: Model = known.declared.scope.model
     tables = (model.parameters, model.coordinates, model.speeds, model.states, model.inputs)
     others = {name for table in tables for name in table}
     own = {name: each.symbol for name, each in model.outputs.items() if each.symbol and name not in others}
@@ -280,15 +285,15 @@ def heads_in_symbols(run: Trajectory) -> dict[str, str]:
     return {name: f"${notation.latex(name)}$" for name in run.columns() if name in named}
 
 
-def by_unit(trajectory: Trajectory, units: Mapping[str, Unit]) -> dict[Unit, list[str]]:
-    """The coordinates of each unit."""
+def by_unit(names: Iterable[str], units: Mapping[str, Unit]) -> dict[Unit, list[str]]:
+    """Names that have each unit."""
     groups: dict[Unit, list[str]] = {}
-    for name in trajectory.coordinates:
+    for name in names:
         groups.setdefault(units.get(name, PLAIN), []).append(name)
     return groups
 
 
-def _coordinates(panel: Any, trajectory: Trajectory, names: list[str], unit: Unit) -> None:
+def _of_state(panel: Any, trajectory: Trajectory, names: list[str], unit: Unit) -> None:
     curves = {name: trajectory[name] / unit.size for name in names}
     _curves(panel, trajectory.t, curves, unit, notation_of_run(trajectory))
 
@@ -470,13 +475,15 @@ def run_picture(
     Args:
         view: one of VIEWS.
         title: above it, the model's name.
-        units: of the coordinates by name, in which they are drawn; absent: SI.
+        units: of its columns by name, in which they are drawn; absent: SI. None: those of its model.
     Raises:
         UsageError: no such view.
         RunFailed: the run has nothing of the kind.
     """
     if view not in VIEWS:
         raise UsageError(f"no view '{view}' of a run", fix=f"one of {', '.join(VIEWS)}")
+    if units is None and (model := _model_of(run)) is not None:
+        units = model.units_of(run.columns())
     return VIEWS[view](run, title, units or {})
 
 

@@ -76,7 +76,7 @@ LETTERS = {
     "omega_1": r"\omega_{1",
     "omega_2": r"\omega_{2",
     "omega_3": r"\omega_{3",
-    "gap": r"\phi_{",
+    "gap": r"\Phi_{",
     "couple": r"\tau_{",
     "Fin_x": r"F^{\mathrm{in}}_{x",
     "Fin_y": r"F^{\mathrm{in}}_{y",

@@ -139,7 +139,7 @@ class Pictures:
 
 
 # -------- curves ----------------------------------------------------------------------------------------------
-# Trajectory -> drawings of it over time, SVG: coordinates by unit, energy, reactions; small, in the page's colours.
+# Trajectory -> drawings over time, SVG: coordinates and states by unit, energy, reactions; in the page's colours.
 
 
 WIDTH, HEIGHT = 720.0, 186.0
@@ -200,14 +200,15 @@ class Line:
 
 
 def motion_drawings(run: Trajectory, units: Mapping[str, Unit]) -> tuple[ReportFigure, ...]:
-    """Coordinates over time, one drawing a unit; the energy, or its error; reactions.
+    """Coordinates over time, one drawing a unit, states of first order alike; the energy, or its error; reactions.
 
     Args:
-        units: of the coordinates by name, in which they are drawn; absent: SI.
+        units: of coordinates and states by name, in which they are drawn; absent: SI.
     """
-    found = []
-    for number, (unit, names) in enumerate(by_unit(run, units).items(), start=1):
-        found.append(_coordinates(run, names, unit, f"motion{number}"))
+    found: list[ReportFigure] = []
+    for what, those in (("Coordinates", run.coordinates), ("States of first order", run.states)):
+        for unit, names in by_unit(those, units).items():
+            found.append(_of_state(run, names, unit, f"motion{len(found) + 1}", what))
     if run.energy is not None:
         found.append(_energy(run))
     found += [
@@ -216,7 +217,7 @@ def motion_drawings(run: Trajectory, units: Mapping[str, Unit]) -> tuple[ReportF
     return tuple(found)
 
 
-def _coordinates(run: Trajectory, names: Sequence[str], unit: Unit, key: str) -> ReportFigure:
+def _of_state(run: Trajectory, names: Sequence[str], unit: Unit, key: str, what: str) -> ReportFigure:
     graph = Graph()
     lines = [
         Line(run[name] / unit.size, f"curve c{k % COLORS}{' d1' if k >= COLORS else ''}", (graph.symbol(name),))
@@ -224,7 +225,7 @@ def _coordinates(run: Trajectory, names: Sequence[str], unit: Unit, key: str) ->
     ]
     more = f"; {len(names) - len(lines)} more are not drawn" if len(names) > len(lines) else ""
     measured = f" [{unit}]" if unit.text else ""
-    return panel(run, lines, key, f"Coordinates{measured} over time [s]{more}")
+    return panel(run, lines, key, f"{what}{measured} over time [s]{more}")
 
 
 def _energy(run: Trajectory) -> ReportFigure:

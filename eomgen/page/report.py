@@ -567,7 +567,7 @@ def _outputs(subject: Subject) -> ReportSection | None:
 
 def _plots(subject: Subject) -> ReportSection | None:
     run = subject.run
-    drawings = motion_drawings(run, subject.model.units_of(run.coordinates))
+    drawings = motion_drawings(run, subject.model.units_of((*run.coordinates, *run.states)))
     ended = "" if run.ok else f"The run ended early: {run.message.rstrip('.')}."
     words = " ".join(filter(None, (ended, subject.followed[1], run.still)))
     return ReportSection("plots", drawings=drawings, remark=words)

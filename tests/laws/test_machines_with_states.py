@@ -11,6 +11,8 @@ from scipy.linalg import expm
 from scipy.optimize import brentq
 
 import eomgen
+from eomgen.model import Unit
+from eomgen.page.figure import motion_drawings
 
 MODELS = Path(__file__).parents[2] / "models"
 FINE = {"rtol": 1e-11, "atol": 1e-12, "target": "numpy"}
@@ -31,6 +33,16 @@ def test_a_motor_lifts_a_load_through_its_gear():
     assert [run[x][-1] for x in ("theta", "theta'", "i")] == pytest.approx(expm(A / 2)[:3, 3], rel=1e-9)
     assert run["reaction_couple(gear)"][-1] == pytest.approx(Jm * (n * A[1, :] @ [*run.x[-1, [0, 2, 3]], 1]) * 1
         + b * n * run["theta'"][-1] - k * run["i"][-1], rel=1e-7)  # fmt: skip
+
+
+def test_a_current_is_drawn_in_its_own_unit(tmp_path):
+    """Picture of a run and page: a state of first order has a curve, in a panel beside those of the coordinates."""
+    run = run_of("dc_motor", 0.5)
+    run.plot(tmp_path / "run.svg")
+    assert "i [A]" in (tmp_path / "run.svg").read_text().replace("$", "")
+    units = {"theta": Unit.parse("rad"), "phi": Unit.parse("rad"), "i": Unit.parse("mA")}
+    captions = [drawing.caption for drawing in motion_drawings(run, units)]
+    assert captions[:2] == ["Coordinates [rad] over time [s]", "States of first order [mA] over time [s]"]
 
 
 def test_a_servo_holds_its_arm_where_the_current_carries_it():
