@@ -546,7 +546,7 @@ def requested_document(
 
 
 def write_result(
-    found: Callable[..., Result], *, plot: str | None, certify: bool, at_start: bool = False, **options: Any
+    found: Callable[..., Result], *, certify: bool, plot: str | None = None, at_start: bool = False, **options: Any
 ) -> int:
     """Writes the result of a verb, at the start or elsewhere, with its plot and its proof where these are requested."""
     from eomgen.documents import shown, with_start_reported

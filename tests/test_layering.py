@@ -233,26 +233,26 @@ def test_a_ring_is_seen():
     assert ring({"a": {"b"}, "b": {"c"}, "c": {"a"}}) == ["a", "b", "c", "a"]
 
 
-DOORS = {  # rooms that are imported through what their stub names, and how many names that is: it may only fall
-    "robots": 10,
+DOORS = {  # rooms that are imported through what their stub names, and how many names others take: it may only fall
+    "robots": 7,
     "scene": 32,
     "questions": 5,
     "runs": 16,
-    "sensitivities": 6,
-    "sweeps": 8,
-    "identification": 7,
-    "page": 15,
-    "judge": 5,
-    "verbs": 13,
-    "living": 1,
-    "language_server": 2,
+    "sensitivities": 4,
+    "sweeps": 5,
+    "identification": 3,
+    "page": 6,
+    "judge": 3,
+    "verbs": 2,
+    "living": 0,
+    "language_server": 1,
     "codegen": 27,
     "simulation": 28,
-    "documents": 138,
-    "results": 16,
-    "study": 20,
-    "proof": 64,
-    "model": 104,
+    "documents": 135,
+    "results": 15,
+    "study": 19,
+    "proof": 63,
+    "model": 101,
     "mechanics.kinematics": 21,
     "mechanics.constraints": 15,
     "mechanics.dynamics": 20,
@@ -271,6 +271,9 @@ DOORS = {  # rooms that are imported through what their stub names, and how many
 }
 
 
+RATCHET = "; it may only fall: do without one, or raise it here, and say in the commit for which feature"
+
+
 def given(package: str) -> set[str]:
     """The names in the stub of a package, each with the module that it comes from."""
     stub = PACKAGE.joinpath(*package.split(".")[1:], "__init__.pyi").read_text("utf-8")
@@ -284,9 +287,12 @@ def inside(name: str, package: str) -> bool:
 
 @pytest.mark.parametrize("own", DOORS)
 def test_a_room_with_a_door_is_entered_by_its_door(own):
-    """Others import from the package alone, only what its stub names; and all that it names is used."""
+    """Others import from the package alone, only what its stub names; and all that it names is used.
+
+    What only users and the command line ask for is not counted: a new command brings one name.
+    """
     package = f"eomgen.{own}"
-    used = given("eomgen")
+    used, by_rooms = given("eomgen"), set[str]()
     for name, path in module_names(PACKAGE).items():
         if inside(name, package) or name == "eomgen":
             continue
@@ -295,8 +301,9 @@ def test_a_room_with_a_door_is_entered_by_its_door(own):
                 names = {alias.name for alias in node.names}
                 assert node.module == package and names <= given(package), f"{name}:{node.lineno}"
                 used |= names
-    assert given(package) <= used
-    assert len(given(package)) <= DOORS[own]
+                by_rooms |= set() if name.startswith("eomgen.cli") else names
+    assert not given(package) - used, f"nobody takes this from {package}: leave it out of its stub"
+    assert len(by_rooms) <= DOORS[own], f"names that rooms take from {package}{RATCHET}"
 
 
 @pytest.mark.parametrize("own", DOORS)
@@ -374,11 +381,14 @@ def house():
 
 def test_a_newcomer_has_no_more_to_know_than_was_reached(house):
     """Modules outside the seams, lines of the longest, modules of one importer, names of lower rooms used elsewhere."""
-    assert len(house.chapters) <= 329
-    assert max(m.lines for m in house.modules.values()) <= 700
-    assert len(house.private) <= 41
-    assert len(house.taken_from(("symbolic", "model", "mechanics", "codegen", "simulation"))) <= 509
-    assert {room: k for room in FOREIGN if (k := len(house.taken_by(room))) > FOREIGN[room]} == {}
+    assert len(house.chapters) <= 329, f"modules outside the seams{RATCHET}"
+    assert max(m.lines for m in house.modules.values()) <= 700, "lines of a module: it is two"
+    assert len(house.private) <= 41, f"modules that one other imports{RATCHET}"
+    lower = ("symbolic", "model", "mechanics", "codegen", "simulation")
+    assert len(house.taken_from(lower)) <= 509, f"names of lower rooms that others take{RATCHET}"
+    assert {room: k for room in FOREIGN if (k := len(house.taken_by(room))) > FOREIGN[room]} == {}, (
+        f"names that a room takes{RATCHET}"
+    )
 
 
 def test_readers_of_pages_share_nothing_with_their_writers(house):
