@@ -535,7 +535,9 @@ class OfImpact:
         if self.holds and self._is_identity:
             return Verdict(given, IMPACT, WRONG, causes=(Cause("other", SAYS_NOTHING, quantity="what is equated"),))
         if self.holds is not False:
-            up_to = f"the impact of {', '.join(self.equations.contacts)}" if several else ""
+            own = ", ".join(self.equations.contacts)
+            up_to = f"the impact of {own}" if several else ""
+            up_to = f"the impact of {own} as long as it slides on" if self.equations.rubbing else up_to
             return Verdict(given, IMPACT, RIGHT if self.holds else UNDECIDED, up_to)
         left = short_text(self.solved(self.difference), self.system.scope.positive)
         return Verdict(given, IMPACT, WRONG, difference=left, causes=(self.cause,))

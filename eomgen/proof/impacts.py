@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property, partial
 from itertools import pairwise
 from random import Random
@@ -19,7 +20,7 @@ import numpy as np
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Row
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.impacts import Hit, ImpactEquations, Jump
+from eomgen.mechanics.impacts import Hit, ImpactEquations, ImpactLaw, Jump
 from eomgen.mechanics.kinematics import SystemInertia
 from eomgen.model import PointForce
 from eomgen.proof.check import Check, Tally
@@ -132,11 +133,15 @@ def _pushed(found: ImpactEquations, state: State, after: Mapping[Node, Any]) -> 
     total: list[Any] = [0] * len(u)
     for row in found.rows:
         along: list[Any] = [0] * len(u)
-        for body, wrench in row.row.wrenches:
+        factor = None if row.rubs is None else _numbers((row.rubs.factor,), state)[0]
+        pushes = [] if factor is None else [motion.body_wrench(push) for push in row.row.tangent]
+        rubbing = [(*each, factor) for each in pushes if each is not None]
+        for body, wrench, share in (*((*each, 1) for each in row.row.wrenches), *rubbing):
             twist = motion.link(body).twist
             slopes = _numbers(tuple(x for r in jacobian((*twist.w, *twist.v), u) for x in r), state)
             W = _numbers((*wrench.tau, *wrench.f), state)
-            along = [a + sum(W[m] * slopes[m * len(u) + k] for m in range(6)) for k, a in enumerate(along)]
+            works = (sum(W[m] * slopes[m * len(u) + k] for m in range(6)) for k in range(len(u)))
+            along = [a + share * work for a, work in zip(along, works, strict=True)]
         if not row.row.wrenches:
             along = _numbers(row.J, state)
         total = [a + after[row.impulse] * b for a, b in zip(total, along, strict=True)]
@@ -182,13 +187,17 @@ def _jumps_otherwise(found: ImpactEquations, state: State) -> str:
         NoValue: at this state an impulse would pull, or something is not approached: the law says another thing.
     """
     n = len(found.u)
-    rows = [[*row.J, row.sigma] for row in found.rows]
+    rubbing = list(found.rubbing.values())
+    rows = [[*row.J, row.sigma] for row in found.rows] + [[*own.J, own.sigma] for own in rubbing]
     values = _numbers((*(x for row in found.M for x in row), *(x for row in rows for x in row)), state)
     M = np.array([float(x) for x in values[: n * n]]).reshape(n, n)
     at = np.array([float(x) for x in values[n * n :]]).reshape(-1, n + 1)
     held = at[[k for k, row in enumerate(found.rows) if row.e is None]]
     closes = [(k, row) for k, row in enumerate(found.rows) if row.e is not None]
     hits = [Hit(row.name, at[k][None], float(_numbers((row.e,), state)[0])) for k, row in closes if row.e is not None]
+    if rubbing:  # then it closes alone
+        mu = abs(float(_numbers((rubbing[0].mu,), state)[0]))
+        hits = [replace(hit, mu=mu, tangents=at[len(found.rows) :]) for hit in hits]
     drawn = np.array([float(state[x]) for x in found.u])
     for u in (drawn, -drawn):
         if len(held):
@@ -198,10 +207,13 @@ def _jumps_otherwise(found: ImpactEquations, state: State) -> str:
         if any(hit.speed(u) >= 0 for hit in hits) or any(there[row.impulse] < 0 for _, row in closes):
             continue
         due = np.array([float(there[x]) for x in found.after])
-        jumped = Jump.of(M, held, hits, u).u
+        along = [hit.tangents for hit in hits if hit.tangents is not None]
+        if any(float(t[0, :-1] @ u + t[0, -1]) * float(t[0, :-1] @ due + t[0, -1]) <= 0 for t in along):
+            continue
+        jumped = Jump.of(M, held, hits, u, ImpactLaw.of(found.system.scope.model.impact, bool(rubbing))).u
         wrong = np.max(np.abs(jumped - due)) > tolerances.CARRIED * (1 + np.max(np.abs(due)))
         return f"the law in numbers gives {jumped}, the formulas {due}" if wrong else ""
-    raise NoValue("nothing is approached, or an impulse would pull")
+    raise NoValue("nothing is approached, an impulse would pull, or sliding stops")
 
 
 # -------- verdicts --------------------------------------------------------------------------------------------
@@ -230,7 +242,10 @@ def sides_differ(found: ImpactEquations, difference: Scalar) -> bool:
 def _by_differences(found: ImpactEquations, state: State) -> list[Any]:
     """(speeds after it, impulses) at a state, in doubles."""
     n, k, u = len(found.u), len(found.rows), found.u
-    scalars = (found.kinetic_energy, *(row.row.velocity for row in found.rows))
+    velocities = tuple(row.row.velocity for row in found.rows)
+    sliding = tuple(0 if row.rubs is None else row.row.sliding for row in found.rows)
+    scalars = (found.kinetic_energy, *velocities, *sliding)
+    factors = [0.0 if row.rubs is None else float(_numbers((row.rubs.factor,), state)[0]) for row in found.rows]
 
     def at(*faster: int) -> np.ndarray:
         moved = {u[i]: state[u[i]] + faster.count(i) for i in faster}
@@ -241,10 +256,11 @@ def _by_differences(found: ImpactEquations, state: State) -> list[Any]:
     for i in range(n):
         for j in range(n):
             whole[i, j] = at(i, j)[0] - by_one[i][0] - by_one[j][0] + here[0]
-        whole[n:, i] = by_one[i][1:] - here[1:]
-        whole[i, n:] = -whole[n:, i]
+        slopes = by_one[i][1:] - here[1:]
+        whole[n:, i] = slopes[:k]
+        whole[i, n:] = -(slopes[:k] + factors * slopes[k:])
     e = [0.0 if row.e is None else float(_numbers((row.e,), state)[0]) for row in found.rows]
-    right[n:] = -(1 + np.array(e)) * here[1:]
+    right[n:] = -(1 + np.array(e)) * here[1 : 1 + k]
     values = np.linalg.solve(whole, right)
     values[:n] += [float(state[x]) for x in u]
     return [fifty_digits().number(float(x)) for x in values]

@@ -77,6 +77,11 @@ class ImpactResult(Result):
             ]
         named = [(row.impulse, f"impulse of {row.name}", row.unit) for row in found.rows]
         later = [(x, f"{u.name} after the impact", "") for u, x in zip(found.u, found.after, strict=True)]
+        if found.rubbing:
+            said = ", ".join(found.rubbing)
+            statements.append(
+                prose(f"Friction pushes {said} against its sliding by mu times the normal impulse, if it slides on.")
+            )
         table = Grid(("symbol", "meaning", "unit"), (*named, *later))
         return Step("impact", "Impact", (*statements, table))
 
@@ -102,8 +107,19 @@ class ImpactResult(Result):
             *page(reader, [(x, found.solution[x]) for x in found.after]),
             prose("The kinetic energy that is lost:"),
             *page(reader, [(LOSS, found.loss)]),
+            *self._sliding(reader),
         )
         return Step("impulses", "Impulses, speeds and loss", statements)
+
+    def _sliding(self, reader: Reader) -> tuple[Statement, ...]:
+        """Statements of when a contact that rubs slides on."""
+        found: list[Statement] = []
+        for name, (before, later) in self.equations.slides_on.items():
+            found.append(
+                prose(f"This holds where {name} slides on: its sliding velocities before and after have one sign:")
+            )
+            found += page(reader, [(Name("v_t", name), before), (Name("v_t_after", name), later)])
+        return tuple(found)
 
     def certify(self) -> Certificate:
         """Check momenta of the bodies, restitution, energies, and the law in numbers."""
@@ -124,6 +140,7 @@ class ImpactResult(Result):
                 "joints": {name: [to_text(x) for x in vector][:axes] for name, vector in found.of_joints.items()},
                 "after": {u.name: to_text(found.solution[x]) for u, x in zip(found.u, found.after, strict=True)},
                 "loss": to_text(found.loss),
+                "slides_on": {name: [to_text(x) for x in pair] for name, pair in found.slides_on.items()},
             },
         }
 
@@ -143,7 +160,7 @@ def impact(model: Model, contacts: Sequence[str] = (), *, full: bool = False) ->
     modes = ContactsAtStart.of(model).modes
     ending = [contact.name for contact in model.contacts if contact.unilateral]
     closed = [name for name in ending if name not in modes or modes[name].closed] if len(ending) > 1 else []
-    found = ImpactEquations.of(model, contacts, closed)
+    found = ImpactEquations.of(model, contacts, closed, slides=True)
     if not found.u:
         raise DerivationError("nothing of the model can move", fix="give it a coordinate")
     return ImpactResult(model, found, full)

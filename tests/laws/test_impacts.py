@@ -906,9 +906,51 @@ def test_a_number_of_an_impact_is_judged_at_its_instant():
 def test_names_that_no_impact_has_and_impacts_that_rub_are_undecided():
     model = eomgen.loads(HEAD + DUMBBELL)
     assert eomgen.verify(model, "z_after' = 2").unknown == ("z_after'",)
-    rough = eomgen.loads(HEAD + DUMBBELL.replace('restitution = "e"', 'restitution = "e"\nfriction = 0.3'))
+    rough = eomgen.loads('eomgen = 1\nspace = "space"\n' + ROUGH_BALL)
     found = eomgen.verify(rough, "x_after' = x'")
     assert found.verdict == "undecided" and "friction has a part in the impact" in found.reason
+
+
+ROUGH_BALL = """
+coordinates = { x = { speed = 1 }, z = { start = 1 } }
+bodies.ball = { shape = { kind = "particle", mass = 1 }, joint = { kind = "placed", at = ["x", 0, "z"] } }
+[constraints.floor]
+kind = "support"
+point = "ball.origin"
+normal = [0, 0, 1]
+at = [0, 0, 0]
+unilateral = true
+restitution = 0.5
+friction = 0.3
+"""
+
+
+def test_the_impact_of_what_slides_on_in_formulas():
+    """M (u+ - u) = (n - mu sign(v_t) t) Lam; where v_t keeps its sign, Lam and u+ are those of Routh's graph."""
+    text = DUMBBELL.replace('restitution = "e"', 'restitution = "e"\nfriction = 0.3')
+    found = derived(text)
+    names = {"m": 1, "l": 1, "e": 0.5, "phi": 0.5, "x'": 3, "y'": -4, "phi'": 0.2}
+
+    def number(written: str) -> float:
+        return float(
+            sympy.sympify(written.replace("'", "_"), {f"{k.replace(chr(39), '_')}": v for k, v in names.items()})
+        )
+
+    x, y = -math.cos(0.5) / 2, -math.sin(0.5) / 2
+    v = np.array([-4 + x * 0.2, 3 - y * 0.2])
+    D = np.array([[0.5 + x * x / 0.5, -x * y / 0.5], [-x * y / 0.5, 0.5 + y * y / 0.5]])
+    p = alone(D, v, Rubbing("floor", 0.3, 0.5))
+    assert (v + D @ p)[1] * v[1] > 0
+    assert number(found["impulses"]["floor"]) == pytest.approx(p[0], rel=1e-12)
+    assert number(found["after"]["x'"]) == pytest.approx(3 + p[1] / 2, rel=1e-12)
+    assert number(found["slides_on"]["floor"][1]) == pytest.approx((v + D @ p)[1], rel=1e-12)
+    assert number(found["loss"]) == pytest.approx(-(v @ p + p @ D @ p / 2), rel=1e-12)
+    model = eomgen.loads(HEAD + text)
+    right = "2*m*(x_after' - x') = -0.3*sign(2*x' + l*sin(phi)*phi')*Lambda_floor"
+    said = eomgen.verify(model, right)
+    assert said.verdict == "right" and said.up_to == "the impact of floor as long as it slides on"
+    assert eomgen.verify(model, right.replace("-0.3", "0.3")).verdict == "wrong"
+    assert eomgen.verify(model, "x_after' = x'").verdict == "wrong"
 
 
 # -- impulses of joints ----------------------------------------------------------------------------

@@ -4,11 +4,15 @@
 
 Contacts that close push: Lam > 0 says that the others are right to hold. The kinetic energy lost, where nothing is
 given a speed:  T- - T+ = - sum Lam (v+ + v-)/2.
+
+A contact that rubs, in the plane and hit alone, as long as it slides on: its push is along n - mu sign(v_t) t, and the
+laws of Newton, Poisson and Stronge are one. Where sliding stops in the impact the laws part, and no one formula holds.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 
 from eomgen.errors import DerivationError, UsageError
@@ -19,11 +23,38 @@ from eomgen.mechanics.free_bodies import Reactions
 from eomgen.mechanics.kinematics import ContactMode, SystemInertia
 from eomgen.model import Contact, Model
 from eomgen.symbolic.exact import book_form, cramer
-from eomgen.symbolic.expression import Node, Scalar, ScalarRow, Vector, inner, is_zero, jacobian, over, substituted
+from eomgen.symbolic.expression import (
+    Node,
+    Scalar,
+    ScalarRow,
+    Vector,
+    function,
+    inner,
+    is_zero,
+    jacobian,
+    over,
+    substituted,
+)
 from eomgen.symbolic.numeric import Work, transplanted
 
 MOST_JOINTS = 6  # whose impulses are written out for a reader
 OPEN = ContactMode(closed=False)
+
+
+@dataclass(frozen=True)
+class Rubs:
+    """Friction of a contact in an impact, as long as it slides on.
+
+    Args:
+        mu: its coefficient.
+        J, sigma: its sliding velocity v_t = J u + sigma.
+        factor: the friction along it for a unit of the normal impulse: -mu sign(v_t).
+    """
+
+    mu: Scalar
+    J: ScalarRow
+    sigma: Scalar
+    factor: Scalar
 
 
 @dataclass(frozen=True)
@@ -34,8 +65,10 @@ class ImpactRow:
         name: of its impulse: floor, or of a constraint with more rows "A x".
         e: its restitution; None: it holds.
         J, sigma: its velocity J u + sigma.
+        push: along which its impulse acts: J, with friction J - mu sign(v_t) J_t.
         impulse: the symbol of its impulse [N s, of couples N m s].
         row: from which it was made.
+        rubs: its friction; None: it has none.
     """
 
     name: str
@@ -44,6 +77,8 @@ class ImpactRow:
     sigma: Scalar
     impulse: Node
     row: Row
+    push: ScalarRow
+    rubs: Rubs | None = None
 
     @property
     def unit(self) -> str:
@@ -89,7 +124,7 @@ class ImpactEquations:
         changes = [later - before for later, before in zip(self.after, self.u, strict=True)]
         left = [inner(row, changes) for row in self.M]
         impulses = [row.impulse for row in self.rows]
-        right = [inner([row.J[k] for row in self.rows], impulses) for k in range(len(self.u))]
+        right = [inner([row.push[k] for row in self.rows], impulses) for k in range(len(self.u))]
         return tuple(zip(left, right, strict=True))
 
     @cached_property
@@ -112,7 +147,7 @@ class ImpactEquations:
         rows: list[dict[int, Scalar]] = [_entries(row) for row in self.M]
         right: list[Scalar] = [0] * n
         for m, row in enumerate(self.rows):
-            for k, x in enumerate(row.J):
+            for k, x in enumerate(row.push):
                 if not is_zero(x):
                     rows[k][n + m] = -x
             before = inner(row.J, self.u) + row.sigma
@@ -144,12 +179,31 @@ class ImpactEquations:
         lost: Scalar = 0
         for row in self.rows:
             if row.e is not None:  # v+ + v- = (1 - e) v-
-                lost = lost - self.solution[row.impulse] * (1 - row.e) * inner(row.J, self.u)
+                rate = (1 - row.e) * inner(row.J, self.u)
+                if row.rubs is not None:
+                    rate = rate + row.rubs.factor * sum(self.slides_on[row.name], start=0)
+                lost = lost - self.solution[row.impulse] * rate
         return book_form(over(lost, 2), Work.ANSWER)
+
+    @property
+    def rubbing(self) -> dict[str, Rubs]:
+        """The contacts that slide on in the impact, with their friction."""
+        return {row.name: row.rubs for row in self.rows if row.rubs is not None}
+
+    @property
+    def slides_on(self) -> dict[str, tuple[Scalar, Scalar]]:
+        """(v_t before, v_t after) of each of them: with these signs alike the equations hold."""
+        found = {}
+        for name, own in self.rubbing.items():
+            later = inner(own.J, [self.solution[x] for x in self.after]) + own.sigma
+            found[name] = (inner(own.J, self.u) + own.sigma, book_form(later, Work.ANSWER))
+        return found
 
     @cached_property
     def of_joints(self) -> dict[str, Vector]:
         """Impulse of each joint on its child, ground axes, of up to MOST_JOINTS bodies; {} where they do not follow."""
+        if self.rubbing:
+            return {}
         links = [link for link in self.system.motion.links if link.joint is not None and link.joint.carries_reaction]
         axes = range(2 if self.system.scope.model.space == "plane" else 3)
         if len(links) > MOST_JOINTS:
@@ -200,20 +254,25 @@ class ImpactEquations:
         return bool(self.system.scope.model.driven_coordinates)
 
     @classmethod
-    def of(cls, model: Model, contacts: Sequence[str] = (), closed: Sequence[str] = ()) -> ImpactEquations:
+    def of(
+        cls, model: Model, contacts: Sequence[str] = (), closed: Sequence[str] = (), *, slides: bool = False
+    ) -> ImpactEquations:
         """The equations of the impact in which contacts close.
 
         Args:
             contacts: what closes; (): the one contact that can end.
             closed: contacts that are closed already, and stay so.
+            slides: a contact that rubs slides on, in the plane and hit alone; False: it is refused.
         Raises:
             UsageError: no such contact, or none is named and there are several.
             DerivationError: the coordinates cannot leave a contact, or friction has a part in the impact.
         """
         ending = {contact.name: contact for contact in model.contacts if contact.unilateral}
         names = _named(ending, contacts)
-        for name in names:
-            _refuse_friction(model, ending[name])
+        rough = [name for name in names if _rubs(model, ending[name])]
+        for name in rough:
+            if not slides or model.space == "space" or len(names) > 1 or set(closed) - {name}:
+                raise _undecided(ending[name])
         if len(names) > 1 and model.impact is not None and model.impact.order == "sequential":
             what = "contacts that are hit one after the other have no one set of equations"
             raise DerivationError(what, "impact", f"name one: --impact {names[0]}")
@@ -226,7 +285,8 @@ class ImpactEquations:
             for k, row in enumerate(rows):
                 e = system.scope.value(ending[name].restitution) if ending[name].restitution is not None else 0
                 label = name if k == 0 else f"{name} {row.component}"
-                found.append(_row(system, row, label, e if name in names and k == 0 else None))
+                made = _row(system, row, label, e if name in names and k == 0 else None)
+                found.append(_rubbing(system, made, ending[name]) if name in rough and k == 0 else made)
         redundant = {(row.constraint, row.number) for row in Rank(system.constraints).redundant()}
         several = [row.constraint for row in system.constraints.rows]
         for row in system.constraints.closing:
@@ -255,14 +315,18 @@ def _named(ending: Mapping[str, Contact], contacts: Sequence[str]) -> tuple[str,
     return tuple(contacts) or tuple(ending)
 
 
-def _refuse_friction(model: Model, contact: Contact) -> None:
-    if contact.mu is not None and (contact.restitution is not None or model.impact is not None):
-        raise DerivationError(
-            f"friction has a part in the impact of '{contact.name}': whether it slides, sticks or slides back decides "
-            "its equations",
-            contact.declared_at,
-            "`simulate` follows it; without `friction`, or without `restitution` and [impact], it has none",
-        )
+def _rubs(model: Model, contact: Contact) -> bool:
+    return contact.mu is not None and (contact.restitution is not None or model.impact is not None)
+
+
+def _undecided(contact: Contact) -> DerivationError:
+    what = f"friction has a part in the impact of '{contact.name}': whether it slides, sticks or slides back decides"
+    return DerivationError(
+        f"{what} its equations",
+        contact.declared_at,
+        "`simulate` follows it; `derive --impact` has it in the plane, hit alone, as long as it slides on; without "
+        "`friction`, or without `restitution` and [impact], it has none",
+    )
 
 
 def _row(system: System, row: Row, name: str, e: Scalar | None) -> ImpactRow:
@@ -276,7 +340,18 @@ def _row(system: System, row: Row, name: str, e: Scalar | None) -> ImpactRow:
             "place the body by coordinates that can leave the contact",
         )
     J, sigma = tuple(book_form(x, Work.ANSWER) for x in J), book_form(sigma, Work.ANSWER)
-    return ImpactRow(name, e, J, sigma, u[0].graph.symbol(f"Lambda_{name.replace(' ', '_')}"), row)
+    return ImpactRow(name, e, J, sigma, u[0].graph.symbol(f"Lambda_{name.replace(' ', '_')}"), row, J)
+
+
+def _rubbing(system: System, made: ImpactRow, contact: Contact) -> ImpactRow:
+    """The row with the friction of its contact, which slides on."""
+    u, mu = system.symbols.u, system.scope.value(contact.mu)
+    (J,) = jacobian((made.row.sliding,), u)
+    (sigma,) = substituted((made.row.sliding,), dict.fromkeys(u, 0))
+    J, sigma = tuple(book_form(x, Work.ANSWER) for x in J), book_form(sigma, Work.ANSWER)
+    factor = -mu * function("sign", inner(J, u) + sigma)
+    push = tuple(a + factor * b for a, b in zip(made.J, J, strict=True))
+    return replace(made, push=push, rubs=Rubs(mu, J, sigma, factor))
 
 
 def _after(name: str) -> str:
