@@ -20,7 +20,7 @@ import numpy as np
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Row
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.impacts import Hit, ImpactEquations, ImpactLaw, Jump
+from eomgen.mechanics.impacts import Hit, ImpactEquations, Jump
 from eomgen.mechanics.kinematics import SystemInertia
 from eomgen.model import PointForce
 from eomgen.proof.check import Check, Tally
@@ -210,7 +210,7 @@ def _jumps_otherwise(found: ImpactEquations, state: State) -> str:
         along = [hit.tangents for hit in hits if hit.tangents is not None]
         if any(float(t[0, :-1] @ u + t[0, -1]) * float(t[0, :-1] @ due + t[0, -1]) <= 0 for t in along):
             continue
-        jumped = Jump.of(M, held, hits, u, ImpactLaw.of(found.system.scope.model.impact, bool(rubbing))).u
+        jumped = Jump.of(M, held, hits, u).u
         wrong = np.max(np.abs(jumped - due)) > tolerances.CARRIED * (1 + np.max(np.abs(due)))
         return f"the law in numbers gives {jumped}, the formulas {due}" if wrong else ""
     raise NoValue("nothing is approached, an impulse would pull, or sliding stops")
