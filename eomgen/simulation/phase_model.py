@@ -319,7 +319,9 @@ class PhaseModel:
         symbols, coordinates = self.system.symbols, self.system.scope.model.coordinates
         given = (symbols.t, *symbols.inputs.values(), *(q for q in symbols.q if coordinates[q.name].driven))
         needed = (equation.needed for equation in self.reactions.balance.equations)
-        if any(depends_on(x, given) for x in (*self.equations.forcing, *needed)):
+        sticking = (c.grip for c in self.contacts if self.watch.mode(c).sense == 0)
+        grips = (self.system.scope.value(grip) for grip in sticking)
+        if any(depends_on(x, given) for x in (*self.equations.forcing, *needed, *grips)):
             return False
         x = self.state(values)
         _, size = self.signals.sizes(t, x)

@@ -226,6 +226,13 @@ class Brake(DryForce):
         if joint is None:
             yield Diagnostic((*path, "body"), f"'{self.body}' has no joint that '{path[1]}' could brake")
             return
+        others = [name for name, part in catalog.table("forces").items() if isinstance(part, Brake)]
+        others = [name for name in others if catalog.table("forces")[name].body == self.body and name < str(path[1])]
+        rubs = any(law.smooth is None for _, _, law in joint.frictions)
+        if self.smooth is None and (rubs or others):
+            other = f"the brake '{others[0]}'" if others else "the friction of the joint"
+            what = f"'{path[1]}' and {other} hold '{self.body}' together, and at rest nobody knows how they share"
+            yield Diagnostic(path, what, "write one with both sizes: torque = \"T + mu*N*r\"")
         if self.torque is None and self.force is None and (self.normal is None or self.coefficient is None):
             return
         turns, amount = joint.kind != "prismatic", self.friction.amount
