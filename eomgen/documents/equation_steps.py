@@ -45,6 +45,7 @@ from eomgen.symbolic.expression import (
     is_zero,
     operations,
     order,
+    over,
     sqrt,
     substituted,
 )
@@ -395,6 +396,7 @@ def friction_of(equations: EquationsOfMotion, reader: Reader) -> FrictionTerms:
             value = _normal(readings, contact.component, equations, senses)
             definitions.append((normal, value))
             statements += [Formula((normal, value)), *_along(reader, letters, contact, frictions, senses)]
+            statements += _of_rope(system, contact, (normal, *frictions), senses)
         row = contact.along if contact.normals else substituted(contact.force, senses)
         forces = [total + share * normal for total, share in zip(forces, row, strict=True)]
     step = Step("friction", "Friction", (prose(WORDS), *statements, *_uniqueness(system)))
@@ -434,6 +436,20 @@ def _of_round(
     size = function("abs", parts[0]) if len(parts) == 1 else sqrt(sum((N * N for N in parts), start=0))
     shown = reader.shown(force)
     return shown, Formula((letters.symbols[contact.component], readable_value(reader, factor) * size, shown))
+
+
+def _of_rope(
+    system: System, contact: FrictionContact, letters: Sequence[Node], senses: Mapping[Node, Node]
+) -> list[Formula]:
+    """(T + F/2)/(T - F/2) = e^(-mu phi sign v) of the sides of a rope on a drum; [] of other contacts."""
+    constraint = system.scope.model.constraints.get(contact.name)
+    if constraint is None or constraint.exponent is None:
+        return []
+    T, F = letters
+    v = next(row.sliding for row in system.constraints.rows if row.constraint == contact.name and row.tangent)
+    (way,) = substituted((function("sign", v),), senses)
+    sides = over(T + HALF * F, T - HALF * F)
+    return [Formula((sides, function("exp", -system.scope.value(constraint.exponent) * way)))]
 
 
 def _along(

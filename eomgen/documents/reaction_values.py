@@ -417,6 +417,8 @@ def meaning(balance: Balance, component: Component) -> str:
         return f"tension of member {component.side} of {component.owner}"
     if kind == "tension":
         strand = _strand(balance, component)
+        if balance.system.scope.model.constraints[component.owner].exponent is not None:
+            return f"mean tension of both sides of {component.owner}"
         return f"tension of {component.owner}" + (f", strand {strand}" if strand else "")
     if kind == "drive":
         return f"drive of {component.side or component.owner}, {on}"
@@ -424,6 +426,9 @@ def meaning(balance: Balance, component: Component) -> str:
         return f"force {on}, along {_axis(balance, component, kind)}"
     if kind == "couple":
         return f"couple {on}, {_sense(balance, component)}"
+    constraint = balance.system.scope.model.constraints.get(component.owner)
+    if kind == "t" and constraint is not None and constraint.exponent is not None:
+        return f"tension of side 2 of {component.owner} less that of side 1"
     if kind in ("t", "s"):
         return _friction(balance, component, kind) + (
             ", without sliding" if component.bilateral_friction is None else ""
@@ -439,6 +444,8 @@ def said(balance: Balance, named: NamedReaction) -> str:
     """Meaning in words of a reaction that an output names."""
     kind, _, rest = named.name.removeprefix("reaction_").partition("(")
     axis = kind.removeprefix("couple_")
+    if kind == "tension" and "," in rest:
+        return f"tension of {named.owner}, side {rest.rstrip(')').rpartition(' ')[2]}"
     of_one = [j for j, k in named.combination.items() if type(k) is int and k == 1]
     if axis not in AXES and of_one and not balance.components[of_one[0]].is_wrench:
         return meaning(balance, balance.components[of_one[0]])

@@ -135,7 +135,7 @@ class Connections:
         for name, constraint in self.constraints.items():
             friction, unilateral = getattr(constraint, "friction", None), bool(getattr(constraint, "unilateral", False))
             if unilateral or friction is not None:
-                rough = self.space == "space" and friction is not None
+                rough = self.space == "space" and friction is not None and not constraint.pulls
                 yield Contact(
                     name,
                     constraint.kind,

@@ -198,7 +198,7 @@ def constraints(catalog: Catalog) -> Iterator[Diagnostic]:
             yield from part.diagnostics(path, catalog)
             if table == "constraints":
                 yield from _on_itself(catalog, path, part)
-            friction = getattr(part, "friction", None) if table == "constraints" else None
+            friction = getattr(part, "friction", None) if table == "constraints" and part.exponent is None else None
             if friction is not None:
                 yield from diagnostics_of_one(catalog, (*path, "friction"), friction, ("coulomb", "viscous"))
 

@@ -524,9 +524,23 @@ def other_friction(system: System, state: State) -> str:
             bool(system.modes.get(name, ContactMode()).sense) or along != 0
         )  # in a phase it slides one way, also from rest
         due = [_declared(proof, law, along, slides) for law in _laws(system, name)]
+        due = [_by_euler(proof, rope) * slides] if (rope := _rope(system, name)) is not None else due
         if all(abs(abs(found) - x) > tolerances.ZERO_AT_50 * (1 + x) for x in due):
             return f"the friction of '{name}' is {float(abs(found)):.10g} times its normal force, not as declared"
     return ""
+
+
+def _rope(system: System, name: str) -> Any:
+    """A rope on a drum by its name; None of another contact."""
+    constraint = system.scope.model.constraints.get(name)
+    return constraint if constraint is not None and constraint.exponent is not None else None
+
+
+def _by_euler(proof: InNumbers, rope: Any) -> Any:
+    """|F|/T with T_1 = e^(mu phi) T_2, F = T_1 - T_2, T = (T_1 + T_2)/2."""
+    mu, phi = proof.at(tuple(map(proof.system.scope.value, (rope.coefficient, rope.angle))))
+    ratio = fifty_digits().functions["exp"](mu * phi)
+    return 2 * (ratio - 1) / (ratio + 1)
 
 
 def _laws(system: System, name: str) -> Iterator[Resistance | None]:

@@ -117,6 +117,15 @@ EXAMPLES = {
             '{ at = [0, 0, 9], radius = 0.3, turn = "cw", axis = [0, -1, 0] }]',
         ],
     },
+    "capstan": {
+        PLANE: [
+            'path = ["first.P", { body = "wheel", turn = "cw" }, "second.P"], coefficient = 0.3, angle = "w"',
+            'path = ["first.P", { at = [0, 3], radius = "l", turn = "ccw" }, "second.P"], coefficient = 1, angle = 7',
+        ],
+        SPACE: [
+            'path = ["wheel.P", { at = [0, 0, 0], radius = 0, turn = "cw" }, "G"], coefficient = "w", angle = 1',
+        ],
+    },
     "gear": {
         PLANE: ['bodies = ["first", "second"], ratio = -2', 'bodies = ["wheel", "first"], ratio = "l/w"'],
         SPACE: ['bodies = ["first", "second"], ratio = -2', 'bodies = ["tool", "wheel"], ratio = "l/w"'],
@@ -273,6 +282,7 @@ def test_a_gap_is_left_out_only_where_no_configuration_says_whether_the_tie_hold
     """phi is None for rates that were given, no slip, knife edges, and strands that turn on something round."""
     for row in system_with(kind, space, fields).constraints.rows:
         turning = kind == "string" and ("body" in fields or "radius = 0.3" in fields) and "strands" not in fields
+        turning |= kind == "capstan" and "radius = 0," not in fields
         assert (row.gap is None) == ("rate" in fields or row.component in WITHOUT_GAP.get(kind, ()) or turning)
 
 

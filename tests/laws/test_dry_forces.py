@@ -269,3 +269,96 @@ def test_a_smooth_clutch_has_small_motions():
     found = eomgen.linearize(eomgen.loads(text))
     values = sorted(found.modes.spectrum.eigenvalues, key=lambda x: x.real)
     assert values[0] == pytest.approx(-4 / 0.5 * 5 / 6) and values[1:] == pytest.approx([0, 0, 0], abs=1e-9)
+
+
+ROPE = """
+eomgen = 1
+space = "plane"
+parameters = { m1 = 9, m2 = 2, g = 9.81, mu = 0.3, R = 0.1 }
+coordinates = { y1 = { start = -1 }, y2 = { dependent = true, near = -1 } }
+forces.weight = { kind = "gravity", acceleration = [0, "-g"] }
+outputs = { T1 = "tension(rope, 1)", T2 = "tension(rope, 2)", T = "tension(rope)" }
+bodies.one = { mass = "m1", joint = { kind = "prismatic", at = ["-R", 0], axis = [0, 1], displacement = "y1" } }
+bodies.two = { mass = "m2", joint = { kind = "prismatic", at = ["R", 0], axis = [0, 1], displacement = "y2" } }
+[constraints.rope]
+kind = "capstan"
+path = ["one.origin", { at = [0, 0], radius = "R", turn = "cw" }, "two.origin"]
+coefficient = "mu"
+angle = "pi"
+"""
+
+
+def test_a_rope_slips_on_a_fixed_drum_by_eulers_ratio():
+    """a = g (m_1 - k m_2)/(m_1 + k m_2), k = e^(mu pi); T_1 = k T_2 = m_1 (g - a)."""
+    k = math.exp(0.3 * math.pi)
+    a = G * (9 - 2 * k) / (9 + 2 * k)
+    result = run(ROPE, 0.5)
+    assert senses(result, "rope") == [1]
+    assert result["y1"][-1] == pytest.approx(-1 - a / 8, rel=1e-12)
+    assert (result["T1"][-1], result["T2"][-1]) == pytest.approx((9 * (G - a), 9 * (G - a) / k))
+    assert result["T"][-1] == pytest.approx((result["T1"][-1] + result["T2"][-1]) / 2)
+    assert result.certify().ok
+    text = eomgen.derive(eomgen.loads(ROPE)).render()
+    assert "(T_rope + 1/2*F_rope)/(T_rope - 1/2*F_rope) = exp(pi*mu*sign(y1'))" in text
+
+
+def test_statics_has_eulers_condition_and_both_of_its_limits():
+    """m_1/m_2 <= e^(mu pi), or m_2/m_1 where that is the heavier: rest between both."""
+    k = math.exp(0.3 * math.pi)
+    for m1, said in ((3, "m1/m2 <= exp(pi*mu)"), (1, "m2/m1 <= exp(pi*mu)")):
+        assert [found["condition"] for found in ranges(ROPE.replace("m1 = 9", f"m1 = {m1}"))] == [said]
+    for m1, holds in ((2 * k * 0.999, True), (2 * k * 1.001, False), (2 / k * 1.001, True), (2 / k * 0.999, False)):
+        text = ROPE.replace("m1 = 9", f"m1 = {m1}")
+        assert (not eomgen.statics(eomgen.loads(text)).broken) == holds
+
+
+BAND = """
+eomgen = 1
+space = "plane"
+parameters = { J = 2, R = 0.2, mu = 0.3, phi = { value = 240, unit = "deg" }, P = 100, w0 = W0 }
+coordinates = { q = { speed = "w0" }, y = { dependent = true, near = -0.5 } }
+points.A = [-0.2, -0.5]
+bodies.drum = { inertia = "J", joint = { kind = "revolute", angle = "q" } }
+[bodies.lever]
+mass = 1
+joint = { kind = "prismatic", at = ["R", 0], axis = [0, 1], displacement = "y", force = "-P" }
+[constraints.band]
+kind = "capstan"
+path = ["A", { body = "drum", radius = "R", turn = "cw" }, "lever.origin"]
+coefficient = "mu"
+angle = "phi"
+"""
+
+
+def test_a_band_brake_is_stronger_one_way():
+    """M = P R (e^(mu phi) - 1) where the drum draws the held end, P R (1 - e^(-mu phi)) the other way."""
+    e = math.exp(0.3 * 4 * math.pi / 3)
+    for w0, M in ((30, 20 * (1 - 1 / e)), (-30, 20 * (e - 1))):
+        result = run(BAND.replace("W0", str(w0)), 5)
+        assert senses(result, "band")[-1] == 0
+        assert result.phases[0].end == pytest.approx(60 / M, rel=1e-9), w0
+        assert result.certify().ok
+
+
+def test_a_rope_sticks_to_a_turning_drum_and_then_slips_on_it():
+    """A drum is driven up to speed: the rope drags m_1 up, k = e^(mu pi): m_1 (g + a) <= k m_2 (g - a)."""
+    text = ROPE.replace("m1 = 9", "m1 = 2.5, J = 0.01, M = 3").replace("{ at = [0, 0]", '{ body = "drum"')
+    text = text.replace("coordinates = {", "coordinates = { q = 0,").replace(
+        "[constraints",
+        '[bodies.drum]\ninertia = "J"\njoint = { kind = "revolute", angle = "q", torque = "-M*t" }\n[constraints',
+    )
+    result = run(text, 3)
+    k, R = math.exp(0.3 * math.pi), 0.1
+    a = G * (2 * k - 2.5) / (2.5 + 2 * k)  # the largest with which m_1 is lifted
+    moment = (0.01 / R + (2.5 + 2) * R) * a + (2.5 - 2) * G * R
+    assert senses(result, "rope") == [0, 1]
+    assert result.phases[0].end == pytest.approx(moment / 3, rel=1e-9)
+    assert result.certify().ok
+
+
+def test_a_capstan_in_space_is_that_of_the_plane_and_a_way_without_a_drum_is_refused():
+    text = ROPE.replace('"plane"', '"space"').replace("[0, 1]", "[0, 1, 0]").replace('"-g"]', '"-g", 0]')
+    text = text.replace('R", 0]', 'R", 0, 0]').replace('R", 0]', 'R", 0, 0]').replace("[0, 0]", "[0, 0, 0]")
+    assert run(text, 0.5)["y1"][-1] == pytest.approx(run(ROPE, 0.5)["y1"][-1], rel=1e-12)
+    with pytest.raises(ModelError, match="goes from a point about one drum to a point"):
+        eomgen.loads(ROPE.replace('{ at = [0, 0], radius = "R", turn = "cw" }, ', ""))

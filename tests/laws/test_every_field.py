@@ -251,6 +251,11 @@ acceleration = [0, -9.81]
         vee="kind = 'belt'\nbodies = ['one', 'wheel']\nradii = [0.1, 0.2]\ntension = 'k'\ncoefficient = 0.3\n"
         "wrap = 3\nsmooth = 0.4",
     ),
+    "capstan": constraint(
+        "kind = 'capstan'\npath = ['plate.P', { body = 'drum', radius = 0.1, turn = 'cw' }, "
+        "{ at = [2, 0], radius = 0.1, turn = 'ccw' }]\ncoefficient = 'mu'\nangle = 4\nunilateral = true",
+        free(", speed = 1") + DRUM,
+    ),
     "pin": constraint("kind = 'pin'\npoints = ['plate.P']", free()),
     "support": constraint(
         "kind = 'support'\npoint = 'plate.P'\nnormal = [1, 2]\nat = [0.7, 1]\nfriction = 'mu'", free(", speed = 1")

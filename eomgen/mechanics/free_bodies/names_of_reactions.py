@@ -16,7 +16,7 @@ from eomgen.mechanics.free_bodies.balance import Balance
 from eomgen.mechanics.free_bodies.wrenches import COUPLE, FORCE, Axes, Component, Effect
 from eomgen.mechanics.kinematics import BodyLink, Motion
 from eomgen.model import PointForce
-from eomgen.symbolic.expression import Node, Scalar, Vector, depends_on, derivative, is_zero
+from eomgen.symbolic.expression import Fraction, Node, Scalar, Vector, depends_on, derivative, is_zero
 
 OWN = frozenset(("n", "t", "s", "tension", "friction", ""))  # components that outputs name as they are, in space too
 
@@ -97,9 +97,24 @@ def _of_owner(balance: Balance, owner: str) -> Iterable[NamedReaction]:
         for share in c.friction:
             name = f"friction({owner})" if share.label == "friction" else f"reaction_{share.label}({owner})"
             yield NamedReaction(name, owner, FORCE, {j: share.factor})
+    constraint = balance.system.scope.model.constraints.get(owner)
+    if constraint is not None and constraint.exponent is not None:
+        yield from _sides(owner, dict(apart))
     for j, c in mine:
         if c.kind == "drive" and j == min(drives := _drives(balance, j, c)):  # once, at the first of its joints
             yield NamedReaction(c.name, owner, c.unit, drives, _less_inside(balance, c))
+
+
+def _sides(owner: str, mine: Mapping[int, Component]) -> Iterable[NamedReaction]:
+    """Tensions of both sides of a rope on a drum, T -+ F/2, F sliding or sticking."""
+    mean = next((j for j, c in mine.items() if c.label == "tension"), None)
+    if mean is None:
+        return
+    sliding = sum((share.factor for share in mine[mean].friction), start=0)
+    held = [j for j, c in mine.items() if c.label == "t"]
+    for number, half in ((1, Fraction(-1, 2)), (2, Fraction(1, 2))):
+        combination = {mean: 1 + half * sliding, **dict.fromkeys(held, half)}
+        yield NamedReaction(f"tension({owner}, {number})", owner, FORCE, combination)
 
 
 def _vector(

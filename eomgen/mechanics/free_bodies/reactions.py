@@ -42,6 +42,7 @@ from eomgen.mechanics.state import Numbers
 from eomgen.model import called, declared_at
 from eomgen.symbolic.exact import Solution
 from eomgen.symbolic.expression import (
+    Fraction,
     Matrix,
     Node,
     Scalar,
@@ -196,6 +197,8 @@ class Reactions:
         if several:
             return sqrt(sum((x * x for x in map(self.value, several)), start=0))
         labels = {c.label for c in self.components if c.owner == owner and c.kind == "constraint"}
+        if "tension" in labels:
+            return self.tension(owner)
         return self._labelled(owner, "couple" if labels == {"couple"} else "n", "normal reaction")
 
     def friction(self, owner: str, along: str = "t") -> Scalar:
@@ -245,11 +248,14 @@ class Reactions:
             )
         return self.value(found[0])
 
-    def tension(self, owner: str, strand: int = 1) -> Scalar:
-        """Tension of a link, or of a strand of a string."""
+    def tension(self, owner: str, strand: int | None = None) -> Scalar:
+        """Tension of a link, or of a strand of a string (None: the first); of a capstan the mean, or that of a side."""
         if self.is_open(owner):
             return 0
         constraint = self.balance.system.scope.model.constraints.get(owner)
+        if strand in (1, 2) and constraint is not None and constraint.exponent is not None:
+            return self.tension(owner) + Fraction(2 * strand - 3, 2) * self.friction(owner)
+        strand = 1 if strand is None else strand
         numbers = () if constraint is None else constraint.strand_rows()
         if numbers and not 1 <= strand <= len(numbers):
             raise DerivationError(

@@ -381,7 +381,7 @@ def _never_below_zero(scope: Scope, x: Scalar) -> bool:
         return bool(x >= 0)
     if x.op == "symbol":
         return x in scope.symbols.parameters.values() and scope.model.exact_parameters().get(x.name, 0) >= 0
-    if x.op in ("abs", "exp", "sqrt") or (x.op == "pow" and type(x.args[1]) is int and x.args[1] % 2 == 0):
+    if x.op in ("abs", "exp", "sqrt", "pi") or (x.op == "pow" and type(x.args[1]) is int and x.args[1] % 2 == 0):
         return True
     if x.op == "max":
         return any(_never_below_zero(scope, arg) for arg in x.args)

@@ -358,6 +358,7 @@ class StaticReactions:
                 found.append(RestCondition(name, "pushes", normal))
             if contact.unilateral and pull is not None:
                 found.append(RestCondition(name, "pulls", pull))
+            normal = pull if normal is None else normal
             if contact.mu is not None and normal is not None and along is not None:
                 most = self.system.scope.value(contact.mu) * function("abs", normal)
                 found.append(RestCondition(name, "sticks", most - function("abs", along)))
@@ -515,12 +516,14 @@ class StickCondition:
         ratio: F/N, or F.
         most: the coefficient at rest, or the largest friction.
         force: the largest friction [N, N m].
+        words: as formulas, where F/N is not what is said of it: of the sides of a rope.
     """
 
     contact: str
     ratio: Scalar
     most: Scalar
     force: Scalar
+    words: str = ""
 
 
 @dataclass(frozen=True)
@@ -573,7 +576,22 @@ def _conditions(system: System) -> Iterator[StickCondition]:
         assert contact.grip is not None, "what is rough can stick"
         most = ContactMode.size_of(system.scope, contact.grip)
         ratio = simplest(F if N is None else over(F, N), Work.ANSWER, positive)
-        yield StickCondition(contact.name, ratio, most, most if N is None else most * function("abs", N))
+        force = most if N is None else most * function("abs", N)
+        words = _of_sides(reactions, contact) if contact.pulls else ""
+        yield StickCondition(contact.name, ratio, most, force, words)
+
+
+def _of_sides(reactions: Reactions, contact: Contact) -> str:
+    """T_1/T_2 <= e^(mu phi) of the sides of a rope on a drum, the larger tension above where it is known."""
+    system = reactions.balance.system
+    constraint, positive = system.scope.model.constraints[contact.name], system.scope.positive
+    first, second = (reactions.tension(contact.name, side) for side in (1, 2))
+    most = to_text(function("exp", system.scope.value(constraint.exponent)))
+    larger = _number(system, first - second, {})
+    ratios = [to_text(simplest(over(x, y), Work.ANSWER, positive)) for x, y in ((first, second), (second, first))]
+    if larger is None or larger == 0:
+        return f"{ratios[0]} <= {most} and {ratios[1]} <= {most}"
+    return f"{ratios[0 if larger > 0 else 1]} <= {most}"
 
 
 def _held(reactions: Reactions, contact: Contact) -> Scalar:
@@ -602,6 +620,8 @@ def _magnitude(parts: Sequence[Scalar]) -> Scalar:
 
 def _in_formulas(system: System, condition: StickCondition) -> str:
     """tan(alpha) <= mu, abs(m*g*l*sin(q)/2) <= T_s"""
+    if condition.words:
+        return condition.words
     ratio = condition.ratio
     here = None if depends_on(ratio, system.symbols.q) else _number(system, ratio, {})
     text = to_text(function("abs", ratio) if here is None or here == 0 else ratio if here > 0 else -ratio)

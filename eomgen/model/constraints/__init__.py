@@ -4,6 +4,7 @@ Adding one is one class, next to its kin or in a file of its own, and one name h
 """
 
 from eomgen.model.constraints.base import Constraint
+from eomgen.model.constraints.capstan import Capstan
 from eomgen.model.constraints.driven import Gear, Motion
 from eomgen.model.constraints.equation import Equation
 from eomgen.model.constraints.held import Clamp, Guide, Limit, Skate, Slider, Support
@@ -12,7 +13,7 @@ from eomgen.model.constraints.pin import Pin
 from eomgen.model.constraints.rolling import Rolling
 from eomgen.model.constraints.string import String
 
-ALL = (Pin, Support, Clamp, Guide, Slider, Link, Rolling, Skate, String, Gear, Equation, Motion)
+ALL = (Pin, Support, Clamp, Guide, Slider, Link, Rolling, Skate, String, Capstan, Gear, Equation, Motion)
 
 MADE = (Limit,)
 """Those that other parts of a model make."""
@@ -20,6 +21,7 @@ MADE = (Limit,)
 __all__ = [
     "ALL",
     "MADE",
+    "Capstan",
     "Clamp",
     "Constraint",
     "Equation",

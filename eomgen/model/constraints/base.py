@@ -16,7 +16,7 @@ from eomgen.model.forces.load import LoadContext
 from eomgen.model.kinds import ReactionSymbolsField
 from eomgen.model.part import Part
 from eomgen.model.positions import DocumentPath
-from eomgen.symbolic.expression import Scalar
+from eomgen.symbolic.expression import Expression, Scalar
 
 # -------- meeting ---------------------------------------------------------------------------------------------
 # What touches what in a constraint, as it is declared: fields and names alone, no formulas. Proofs look at them.
@@ -156,6 +156,11 @@ class Constraint(Part, ABC):
 
     def wheels(self) -> tuple[str, str, Any] | None:
         """(first, second, ratio) of two bodies that turn at a ratio, omega_1 = ratio * omega_2; None of all others."""
+        return None
+
+    @property
+    def exponent(self) -> Expression | None:
+        """mu phi of a rope, whose friction is the difference of the tensions of its sides; None of all others."""
         return None
 
     def strand_rows(self) -> tuple[int, ...]:

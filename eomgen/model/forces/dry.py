@@ -232,7 +232,7 @@ class Brake(DryForce):
         if self.smooth is None and (rubs or others):
             other = f"the brake '{others[0]}'" if others else "the friction of the joint"
             what = f"'{path[1]}' and {other} hold '{self.body}' together, and at rest nobody knows how they share"
-            yield Diagnostic(path, what, "write one with both sizes: torque = \"T + mu*N*r\"")
+            yield Diagnostic(path, what, 'write one with both sizes: torque = "T + mu*N*r"')
         if self.torque is None and self.force is None and (self.normal is None or self.coefficient is None):
             return
         turns, amount = joint.kind != "prismatic", self.friction.amount

@@ -195,8 +195,8 @@ def _tension(scene: OutputContext, call: Call) -> Scalar:
     name, strand = call.name_at(0), call.args[1:]
     if scene.is_truss(name):
         return scene.reactions.member(name, *_ends(call))
-    number = strand[0].literal if strand and isinstance(strand[0], Expression) else 1
-    if not isinstance(number, int) or len(strand) > 1:
+    number = strand[0].literal if strand and isinstance(strand[0], Expression) else None
+    if (strand and not isinstance(number, int)) or len(strand) > 1:
         raise DerivationError(
             f"'{call}': the second argument is the number of the strand, from 1", fix="tension(string, 1)"
         )
@@ -232,7 +232,8 @@ TENSION = OutputFunction(
     least=1,
     shown="(constraint[, number]) or (truss, n1-n2)",
     unit="N",
-    gives="of a link; of a strand of a string, from 1 (default); of a member of a [truss](statics.md#trusses), by "
+    gives="of a link; of a strand of a string, from 1 (default); of a capstan the mean, or of its side 1 or 2; "
+    "of a member of a [truss](statics.md#trusses), by "
     "its two nodes",
     value=_tension,
     source=OutputSource.BALANCE,
