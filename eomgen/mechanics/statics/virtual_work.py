@@ -7,12 +7,9 @@ With one reaction R released the bodies have one motion. In it all other reactio
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Container, Iterator, Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import replace
-from functools import cached_property, partial
-from itertools import pairwise
-from typing import Literal
+from functools import cached_property
 
 from eomgen.errors import DerivationError, ExpressionError, UsageError
 from eomgen.frozen import dataclass
@@ -20,6 +17,7 @@ from eomgen.mechanics.constraints import Rank
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies import Effect, Indeterminate, NamedReaction, Reactions, Structure, VelocityPlan
 from eomgen.mechanics.kinematics import ContactMode, SystemScene
+from eomgen.mechanics.statics.contacts import RestRange, ranges_of_rest
 from eomgen.model import (
     FUNCTIONS,
     Contact,
@@ -46,8 +44,8 @@ from eomgen.symbolic.expression import (
     sqrt,
     substituted,
 )
-from eomgen.symbolic.numeric import FLOAT, NoValue, Work, evaluate, tolerances
-from eomgen.symbolic.print import text_size, to_text
+from eomgen.symbolic.numeric import Work
+from eomgen.symbolic.print import text_size
 
 StaticLoad = PointForce | Couple | SpreadLoad
 
@@ -491,221 +489,3 @@ def _resultant(components: Sequence[Scalar | None]) -> Scalar | None:
 def _value(statics: StaticReactions, name: str) -> Scalar | None:
     reaction: StaticReaction | None = statics.by_name.get(name)
     return None if reaction is None else reaction.value
-
-
-# -------- ranges of rest --------------------------------------------------------------------------------------
-# System whose contacts and joints with dry friction stick -> RestRange: how far it stays at rest.
-#
-#     abs(F)/N <= mu_s of a contact or slide, mu_s r of a hinge;   abs(F) <= F_s where its size is constant
-#
-# F is the friction that holds at rest, a function of the coordinates. The limits of a coordinate are where a
-# condition ends, the others as they stand: from there on motion begins.
-
-
-STEPS = 400  # of the search to each side
-FURTHEST = 1e4  # of a displacement [m]
-OfPlace = Callable[[float], float]
-
-
-@dataclass(frozen=True)
-class StickCondition:
-    """Condition under which a contact or a joint sticks: ratio between - most and most.
-
-    Args:
-        contact: its name.
-        ratio: F/N, or F.
-        most: the coefficient at rest, or the largest friction.
-        force: the largest friction [N, N m].
-        words: as formulas, where F/N is not what is said of it: of the sides of a rope.
-    """
-
-    contact: str
-    ratio: Scalar
-    most: Scalar
-    force: Scalar
-    words: str = ""
-
-
-@dataclass(frozen=True)
-class RestRange:
-    """The range in which something rests.
-
-    Args:
-        name: of a coordinate; of a contact, in a structure without coordinates.
-        low, high: of the coordinate, in SI; of the contact's friction. None: no limit on that side, or no values.
-        condition: as formulas.
-        extent: of a coordinate while the others stand as they do; "unknown" where something has no value.
-    """
-
-    name: str
-    low: float | None
-    high: float | None
-    condition: str
-    extent: Literal["between", "anywhere", "nowhere", "unknown"] = "between"
-
-
-def ranges_of_rest(system: System) -> tuple[RestRange, ...]:
-    """The range of rest of each coordinate, or of the friction of each contact where there are none; () without any."""
-    found = tuple(_conditions(system))
-    if not found:
-        return ()
-    words = {each.contact: _in_formulas(system, each) for each in found}
-    declared = system.scope.model.coordinates
-    places = [q for q in system.symbols.q if not (declared[q.name].driven or declared[q.name].dependent)]
-    if not places:
-        return tuple(_of_contact(system, each, words[each.contact]) for each in found)
-    return tuple(_of_coordinate(system, q, found, words) for q in places)
-
-
-def _conditions(system: System) -> Iterator[StickCondition]:
-    symbols = system.symbols
-    still: dict[Node, Scalar] = {symbols.t: 0, **dict.fromkeys((*symbols.u, *symbols.a), 0)}
-    rough = [c for c in system.scope.model.rough_contacts if (mode := system.modes.get(c.name)) and mode.sense == 0]
-    if not rough:
-        return
-    try:
-        reactions = Reactions.of(system, still)
-    except DerivationError:  # what acts at no place has no reactions
-        return
-    positive = system.scope.positive
-    for contact in rough:
-        try:
-            F, N = _held(reactions, contact), _pressed(reactions, contact)
-        except DerivationError:  # it has no single value
-            continue
-        assert contact.grip is not None, "what is rough can stick"
-        most = ContactMode.size_of(system.scope, contact.grip)
-        ratio = simplest(F if N is None else over(F, N), Work.ANSWER, positive)
-        force = most if N is None else most * function("abs", N)
-        words = _of_sides(reactions, contact) if contact.pulls else ""
-        yield StickCondition(contact.name, ratio, most, force, words)
-
-
-def _of_sides(reactions: Reactions, contact: Contact) -> str:
-    """T_1/T_2 <= e^(mu phi) of the sides of a rope on a drum, the larger tension above where it is known."""
-    system = reactions.balance.system
-    constraint, positive = system.scope.model.constraints[contact.name], system.scope.positive
-    first, second = (reactions.tension(contact.name, side) for side in (1, 2))
-    most = to_text(function("exp", system.scope.value(constraint.exponent)))
-    larger = _number(system, first - second, {})
-    ratios = [to_text(simplest(over(x, y), Work.ANSWER, positive)) for x, y in ((first, second), (second, first))]
-    if larger is None or larger == 0:
-        return f"{ratios[0]} <= {most} and {ratios[1]} <= {most}"
-    return f"{ratios[0 if larger > 0 else 1]} <= {most}"
-
-
-def _held(reactions: Reactions, contact: Contact) -> Scalar:
-    """The friction that holds a contact or joint; on a surface its magnitude."""
-    if isinstance(contact.friction, JointFriction):
-        return reactions.friction_of_joint(contact.name)
-    return _magnitude([reactions.friction(contact.name, along) for along in ("ts" if contact.surface else "t")])
-
-
-def _pressed(reactions: Reactions, contact: Contact) -> Scalar | None:
-    """The force on which its friction depends; None of a constant size.
-
-    Raises:
-        Indeterminate: it has no single value.
-    """
-    if contact.size is not None:
-        return None
-    if contact.of_joint:
-        return _magnitude([reactions.value(j) for j in reactions.of_joint(contact.body)])
-    return reactions.normal(contact.name)
-
-
-def _magnitude(parts: Sequence[Scalar]) -> Scalar:
-    return parts[0] if len(parts) == 1 else sqrt(sum((x * x for x in parts), start=0))
-
-
-def _in_formulas(system: System, condition: StickCondition) -> str:
-    """tan(alpha) <= mu, abs(m*g*l*sin(q)/2) <= T_s"""
-    if condition.words:
-        return condition.words
-    ratio = condition.ratio
-    here = None if depends_on(ratio, system.symbols.q) else _number(system, ratio, {})
-    text = to_text(function("abs", ratio) if here is None or here == 0 else ratio if here > 0 else -ratio)
-    return f"{text} <= {to_text(condition.most)}"
-
-
-def _number(system: System, scalar: Scalar, places: Mapping[Node, float]) -> float | None:
-    """A scalar at rest in numbers; None where a parameter has no value, or it has none."""
-    (given,) = substituted((scalar,), system.scope.known_exactly)
-    try:
-        found = float(evaluate((given,), dict(places), FLOAT)[0])
-    except (KeyError, NoValue):
-        return None
-    return found if math.isfinite(found) else None
-
-
-def _of_contact(system: System, condition: StickCondition, words: str) -> RestRange:
-    most = _number(system, condition.force, {})
-    return RestRange(condition.contact, None if most is None else -most, most, words)
-
-
-def _of_coordinate(
-    system: System, q: Node, conditions: Sequence[StickCondition], words: Mapping[str, str]
-) -> RestRange:
-    """The range of a coordinate in which the conditions hold, the others as they start.
-
-    It is that around its start, of a start that moves off the nearest one.
-    """
-    mine = [c for c in conditions if depends_on(c.ratio, (q,)) or depends_on(c.most, (q,))] or list(conditions)
-    said = " and ".join(dict.fromkeys(words[c.contact] for c in mine))
-    starts = {node: _number(system, x, {}) for node, x in system.scope.start_values().items()}
-    here = {node: x for node, x in starts.items() if x is not None}
-    follows = [x for x in system.symbols.q if system.scope.model.coordinates[x.name].dependent]
-
-    def least(scalars: Sequence[Scalar], x: float) -> float:
-        found = [_number(system, each, {**here, q: x}) for each in scalars]
-        return math.nan if any(each is None for each in found) else min(each for each in found if each is not None)
-
-    margins, ratios = [c.most - function("abs", c.ratio) for c in mine], [[c.ratio] for c in mine]
-    if q not in here or any(depends_on(x, follows) for x in margins) or math.isnan(least(margins, here[q])):
-        return RestRange(q.name, None, None, said, "unknown")
-    joints = (body.joint for body in system.scope.model.bodies.values() if body.joint is not None)
-    ways = _ways(turns=any(q.name in angle.names for joint in joints for angle in joint.turns()))
-    inside = _inside(partial(least, margins), [partial(least, ratio) for ratio in ratios], here[q], ways)
-    if inside is None:
-        return RestRange(q.name, None, None, said, "nowhere")
-    low, high = (_end(partial(least, margins), inside, [sense * way for way in ways]) for sense in (-1, 1))
-    return RestRange(q.name, low, high, said, "anywhere" if low is None and high is None else "between")
-
-
-def _inside(margin: OfPlace, ratios: Sequence[OfPlace], start: float, ways: Sequence[float]) -> float | None:
-    """The place nearest to the start where it rests; a narrow range lies about one where no friction is needed."""
-    if margin(start) >= -tolerances.COMPUTED:
-        return start
-    found = []
-    for sense in (-1, 1):
-        for x, y in pairwise((start, *(start + sense * way for way in ways))):
-            ends = [_last(r, x, y) for r in ratios if r(x) * r(y) < 0]
-            rests = [z for z in (*ends, y) if margin(z) >= -tolerances.COMPUTED]
-            if rests:
-                found.append(rests[0])
-                break
-    return min(found, key=lambda x: abs(x - start), default=None)
-
-
-def _last(function: OfPlace, inside: float, outside: float) -> float:
-    """The last place on a way at which a function has the sign that it has at its beginning."""
-    sign = -1 if function(inside) < -tolerances.COMPUTED else 1
-    for _ in range(100):
-        middle = (inside + outside) / 2
-        inside, outside = (middle, outside) if sign * function(middle) >= 0 else (inside, middle)
-    return inside
-
-
-def _ways(*, turns: bool) -> list[float]:
-    """Distances at which places are tried, ascending: of an angle up to half a turn."""
-    if turns:
-        return [math.pi * k / STEPS for k in range(1, STEPS + 1)]
-    return [FURTHEST ** (2 * k / STEPS - 1) for k in range(STEPS + 1)]
-
-
-def _end(margin: OfPlace, start: float, ways: Sequence[float]) -> float | None:
-    """The place where the margin becomes negative on the way from the start; None where it stays."""
-    for inside, outside in pairwise((start, *(start + way for way in ways))):
-        if margin(outside) < 0:
-            return _last(margin, inside, outside)
-    return None
