@@ -45,7 +45,6 @@ from eomgen.symbolic.expression import (
     is_zero,
     operations,
     order,
-    over,
     sqrt,
     substituted,
 )
@@ -441,15 +440,15 @@ def _of_round(
 def _of_rope(
     system: System, contact: FrictionContact, letters: Sequence[Node], senses: Mapping[Node, Node]
 ) -> list[Formula]:
-    """(T + F/2)/(T - F/2) = e^(-mu phi sign v) of the sides of a rope on a drum; [] of other contacts."""
+    """T + F/2 = e^(-mu phi sign v) (T - F/2) of the sides of a rope on a drum; [] of other contacts."""
     constraint = system.scope.model.constraints.get(contact.name)
     if constraint is None or constraint.exponent is None:
         return []
     T, F = letters
     v = next(row.sliding for row in system.constraints.rows if row.constraint == contact.name and row.tangent)
     (way,) = substituted((function("sign", v),), senses)
-    sides = over(T + HALF * F, T - HALF * F)
-    return [Formula((sides, function("exp", -system.scope.value(constraint.exponent) * way)))]
+    ratio = function("exp", -system.scope.value(constraint.exponent) * way)
+    return [Formula((T + HALF * F, ratio * (T - HALF * F)))]
 
 
 def _along(
