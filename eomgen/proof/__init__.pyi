@@ -119,17 +119,8 @@ from eomgen.proof.posed_model import branches_otherwise as branches_otherwise
 # Formulas as they are printed
 from eomgen.proof.printed import Printed as Printed
 
-# A block that moves
-from eomgen.proof.reported_cuts import ReportedBlock as ReportedBlock
-
 # A force, or a couple, as it leaves, ground axes
 from eomgen.proof.reported_cuts import ReportedForce as ReportedForce
-
-# A row of the table of blocks, by its heads; the row of a load, where it has a place
-from eomgen.proof.reported_cuts import ReportedMotion as ReportedMotion
-
-# Reported section forces of one body
-from eomgen.proof.reported_cuts import ReportedSections as ReportedSections
 
 # Reported derivation of one reaction by virtual work
 from eomgen.proof.reported_cuts import ReportedWork as ReportedWork

@@ -166,42 +166,29 @@ class _Cut(InNumbers):
 
 SECTIONS, HOW_SECTIONS = "reported section forces are those that were found", "heads and texts read back, random values"
 Reported = Scalar | str
-
-
-@dataclass(frozen=True)
-class ReportedSections:
-    """Reported section forces of one body.
-
-    Args:
-        variable: the distance along its axis.
-        pieces: of each "from", "to", "N", "V", "M".
-        extremes: of each "x", "M".
-    """
-
-    variable: str
-    pieces: Sequence[Mapping[str, Reported]]
-    extremes: Sequence[Mapping[str, Reported]]
+Rows = Sequence[Mapping[str, Reported]]
 
 
 def sections_reported(
-    found: Mapping[str, SectionForces], reported: Iterable[tuple[str, ReportedSections]], values: Mapping[str, Any]
+    found: Mapping[str, SectionForces], reported: Iterable[tuple[str, str, Rows, Rows]], values: Mapping[str, Any]
 ) -> Iterator[Check]:
     """Checks of the reported section forces of each body, of every report of it.
 
     Args:
+        reported: (body; the distance along its axis; of each piece "from", "to", "N", "V", "M"; of each extreme "x",
+            "M").
         values: of parameters: near to them everything has a value.
     """
     tally, near = Tally(SECTIONS, HOW_SECTIONS), {name: float(x) for name, x in values.items()}
-    for body, each in reported:
-        tally.add(body, partial(_wrong, found[body], each, near))
+    for body, variable, pieces, extremes in reported:
+        tally.add(body, partial(_wrong, found[body], pieces, extremes, _Values(variable, near)))
     return tally.checks()
 
 
-def _wrong(forces: SectionForces, reported: ReportedSections, near: Mapping[str, float]) -> str:
-    if len(reported.pieces) != len(forces.pieces) or len(reported.extremes) != len(forces.extremes):
-        return f"{len(reported.pieces)} pieces and {len(reported.extremes)} extremes are reported"
-    values = _Values(reported.variable, near)
-    for piece, row in zip(forces.pieces, reported.pieces, strict=True):
+def _wrong(forces: SectionForces, pieces: Rows, extremes: Rows, values: _Values) -> str:
+    if len(pieces) != len(forces.pieces) or len(extremes) != len(forces.extremes):
+        return f"{len(pieces)} pieces and {len(extremes)} extremes are reported"
+    for piece, row in zip(forces.pieces, pieces, strict=True):
         start, end = values.of(piece.start), values.of(piece.end)
         ends = (("from", start), ("to", end))
         wrong = [differing(values.of(row[name]), right, tolerances.CARRIED) for name, right in ends]
@@ -219,7 +206,7 @@ def _wrong(forces: SectionForces, reported: ReportedSections, near: Mapping[str,
             wrong.append(f"dM/dx = {slope:.10g}, V = {V:.10g}")
         if any(wrong):
             return next(filter(None, wrong))
-    for extreme, one in zip(reported.extremes, forces.extremes, strict=True):
+    for extreme, one in zip(extremes, forces.extremes, strict=True):
         for name, due in (("x", one.x), ("M", one.M)):
             if apart := differing(values.of(extreme[name]), values.of(due), tolerances.CARRIED):
                 return f"{name} of an extreme: {apart}"
@@ -292,36 +279,10 @@ WORKS_NAME = "reported virtual displacements and works are right"
 WORKS_HOW = "wrenches of every constraint, declared forces, equilibrium of the bodies"
 MIDDLE = "middle of "
 SaidWork = Scalar | str
-
-
-@dataclass(frozen=True)
-class ReportedBlock:
-    """A block that moves.
-
-    Args:
-        parts: its bodies, members ("T n1-n2") and nodes.
-        spin: about z; shift: of its point at the ground's origin.
-    """
-
-    parts: tuple[str, ...]
-    spin: SaidWork
-    shift: Sequence[SaidWork]
-
-
-@dataclass(frozen=True)
-class ReportedMotion:
-    """A row of the table of blocks, by its heads; the row of a load, where it has a place.
-
-    Args:
-        center: None at infinity.
-        shift: of a block that does not turn, of the place.
-        at: where the load acts, in words.
-    """
-
-    center: Sequence[SaidWork] | None = None
-    spin: SaidWork = 0
-    shift: Sequence[SaidWork] = (0, 0)
-    at: str = ""
+Shift = Sequence[SaidWork]
+Moved = tuple[
+    Shift | None, SaidWork, Shift, str
+]  # (centre, None at infinity; turn; shift; where a load acts, in words)
 
 
 @dataclass(frozen=True)
@@ -330,18 +291,19 @@ class ReportedWork:
 
     Args:
         name: of the reaction.
-        blocks, along, works, value: as machines get them; works are (load, work).
-        rows: of the printed table of blocks; places: of the printed loads.
+        blocks, along, works, value: as machines get them; blocks are (bodies, members "T n1-n2" and nodes; turn
+            about z; shift of the point at the ground's origin), works (load, work).
+        rows: of the printed table of blocks, by its heads; places: of the printed loads that have one.
         printed: the works as they are printed; left, right: of the printed equation R delta_R + ... = 0; last: R.
     """
 
     name: str
-    blocks: Sequence[ReportedBlock]
+    blocks: Sequence[tuple[Sequence[str], SaidWork, Shift]]
     along: SaidWork
     works: Sequence[tuple[str, SaidWork]]
     value: SaidWork
-    rows: Sequence[ReportedMotion]
-    places: Sequence[ReportedMotion]
+    rows: Sequence[Moved]
+    places: Sequence[Moved]
     printed: Sequence[tuple[str, SaidWork]]
     left: SaidWork
     last: SaidWork
@@ -475,9 +437,9 @@ class _Field:
         """body or node -> (w, v_x, v_y) of the point at the ground's origin; one that is not reported is at rest."""
         found: dict[str, np.ndarray] = {}
         ends = {f"{truss} {member}": pair for truss, member, pair in self.proof.found.system.scope.model.truss_members}
-        for block in self.reported.blocks:
-            own = np.array([self.proof.value_of(x) for x in (block.spin, *block.shift[:2])])
-            for part in block.parts:
+        for parts, spin, shift in self.reported.blocks:
+            own = np.array([self.proof.value_of(x) for x in (spin, *shift[:2])])
+            for part in parts:
                 found |= dict.fromkeys(ends.get(part, (part,)), own)
         return found
 
@@ -520,22 +482,23 @@ class _Field:
         if len(self.reported.rows) != len(self.reported.blocks):
             return f"{len(self.reported.rows)} blocks are printed of {len(self.reported.blocks)}"
         for k, (row, block) in enumerate(zip(self.reported.rows, self.reported.blocks, strict=True), start=1):
-            own = np.array([self.proof.value_of(x) for x in (block.spin, *block.shift[:2])])
-            moved = np.array([self.proof.value_of(x) for x in row.shift])
-            if row.center is not None:
-                x, y = (self.proof.value_of(x) for x in row.center)
-                moved = self.proof.value_of(row.spin) * np.array([y, -x])
+            own = np.array([self.proof.value_of(x) for x in (block[1], *block[2][:2])])
+            center, spin, shift, _ = row
+            moved = np.array([self.proof.value_of(x) for x in shift])
+            if center is not None:
+                x, y = (self.proof.value_of(x) for x in center)
+                moved = self.proof.value_of(spin) * np.array([y, -x])
             if np.any(
-                np.abs([self.proof.value_of(row.spin) - own[0], *(moved - own[1:])])
+                np.abs([self.proof.value_of(spin) - own[0], *(moved - own[1:])])
                 > tolerances.CARRIED * (1 + abs(own).max())
             ):
                 return f"block {k} is printed with another motion"
-        for row in self.reported.places:
-            words = [row.at] if not row.at.startswith(MIDDLE) else row.at.removeprefix(MIDDLE).split(", ")
+        for _, _, shift, at in self.reported.places:
+            words = [at] if not at.startswith(MIDDLE) else at.removeprefix(MIDDLE).split(", ")
             places = [self.proof.place(each) for each in words]
             if all(places):
                 due = np.mean([self.at(*place) for place in places if place is not None], axis=0)
-                moved = np.array([self.proof.value_of(x) for x in row.shift])
+                moved = np.array([self.proof.value_of(x) for x in shift])
                 if np.any(np.abs(moved - due) > tolerances.CARRIED * (1 + abs(due).max())):
-                    return f"{row.at} is printed with the shift {moved}, for {due}"
+                    return f"{at} is printed with the shift {moved}, for {due}"
         return ""

@@ -18,7 +18,7 @@ from eomgen.codegen import Program, RightHandSide
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import holds_identically
 from eomgen.mechanics.dynamics import EquationsOfMotion, System
-from eomgen.mechanics.free_bodies import Axes, Effect, Structure, numeral
+from eomgen.mechanics.free_bodies import Axes, Effect, Structure
 from eomgen.mechanics.kinematics import GROUND, BodyLink, SystemScene
 from eomgen.mechanics.statics import StaticReaction, WorkEquation
 from eomgen.model import ArcForm, EllipsoidForm, LineForm, ModelOrPath, PolygonForm, SpreadLoad, UniformField, is_node
@@ -615,13 +615,13 @@ class VirtualDisplacement:
         spots = np.array(self._numbers([x for place in places for x in place[:2]])).reshape(-1, 2)
         low, high = (spots.min(axis=0), spots.max(axis=0)) if len(spots) else (np.zeros(2), np.zeros(2))
         reach = IN_SIGHT * float(np.max(high - low))
-        for number, block in enumerate(plan.blocks, start=1):
+        for numeral, block in plan.numbered_blocks.items():
             place = block.center(plan).place
             if place is None:
                 continue
             spot = np.array(self._numbers(place[:2]))
             if np.all(spot > low - reach) and np.all(spot < high + reach):
-                yield from center_marks([(numeral(number), place)])
+                yield from center_marks([(numeral, place)])
 
     def _numbers(self, scalars: Sequence[Scalar]) -> list[float]:
         """Scalars where the structure stands."""

@@ -12,14 +12,8 @@ from eomgen.mechanics.equilibrium.reactions import RestingReactions as RestingRe
 # The unknowns of the loads for which the system is at rest where it starts
 from eomgen.mechanics.equilibrium.reactions import holding_of as holding_of
 
-# Curve of equilibria
-from eomgen.mechanics.equilibrium.search import Curve as Curve
-
 # The equilibria of a system
 from eomgen.mechanics.equilibrium.search import Equilibria as Equilibria
 
 # One equilibrium
 from eomgen.mechanics.equilibrium.search import Equilibrium as Equilibrium
-
-# Verdict on the stability of an equilibrium, with its reason
-from eomgen.mechanics.equilibrium.stability import Stability as Stability

@@ -57,14 +57,8 @@ from eomgen.mechanics.free_bodies.solution import values_at_a_state as values_at
 # Bodies and the reactions on them, at one configuration
 from eomgen.mechanics.free_bodies.structure import Structure as Structure
 
-# Parts that move as one rigid body
-from eomgen.mechanics.free_bodies.velocity_plan import RigidBlock as RigidBlock
-
 # A field of velocities of rigid bodies, a velocity plan
 from eomgen.mechanics.free_bodies.velocity_plan import VelocityPlan as VelocityPlan
-
-# Roman numeral by which textbooks name a block: I, II, III, IV,
-from eomgen.mechanics.free_bodies.velocity_plan import numeral as numeral
 
 # The axes of each body's equations: the ground's in the plane, the body's own in space
 from eomgen.mechanics.free_bodies.wrenches import Axes as Axes

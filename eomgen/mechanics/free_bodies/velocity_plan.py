@@ -11,7 +11,7 @@ from typing import Any
 
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies.wrenches import Axes, Effect
+from eomgen.mechanics.free_bodies.wrenches import Effect
 from eomgen.mechanics.kinematics import VelocityField
 from eomgen.model import BodyPoint, Couple, PointForce, SpreadLoad, is_node
 from eomgen.symbolic.exact import Legibly, readable_all
@@ -27,6 +27,8 @@ from eomgen.symbolic.print import to_text
 
 
 SIXTH = Fraction(1, 6)
+Displaced = tuple[str, Vector | None, Vector | None]
+"""(where a load acts, displacement of that point, rotation of the body): of what it works on."""
 
 
 @dataclass(frozen=True)
@@ -126,7 +128,7 @@ class VelocityPlan:
         return self.places[place]
 
     def mass_center(self, body: str) -> Vector:
-        return self.position((body, self._axes.masses[self.system.motion.index[body]].com))
+        return self.position((body, self.system.scope.mass_properties(body).com))
 
     def center(self, field: VelocityField) -> PlanCenter:
         """The centre of rotation of a plane motion."""
@@ -159,6 +161,31 @@ class VelocityPlan:
             pairs = zip(substituted(effect.six, self.at), self.velocities[effect.link], strict=True)
             total = total + sum((f * v for f, v in pairs), start=0)
         return total
+
+    def displaced(self, load: PointForce | Couple | SpreadLoad) -> list[Displaced]:
+        """Points on which a load works: of a uniform line load the middle, where its resultant acts, else both ends."""
+        if isinstance(load, Couple):
+            return [(load.body, None, self.spin(load.body))]
+        if isinstance(load, PointForce):
+            return [(self.point_name(load.place), self.velocity(load.place), None)]
+        a, b = (self.point_name(place) for place in (load.start, load.end))
+        v, w = (self.velocity(place) for place in (load.start, load.end))
+        if not _same(load.at_start, load.at_end):
+            return [(a, v, None), (b, w, None)]
+        return [(f"middle of {a}, {b}", Vector(map(self.simple, Fraction(1, 2) * (v + w))), None)]
+
+    def point_name(self, place: BodyPoint) -> str:
+        """A place by the name of the point of the body that is there."""
+        body, r = place
+        if body is None:
+            return "the ground"
+        if is_node(body):
+            return body
+        named = [name for name, at in self.system.motion.points[body].items() if _same(at, r)]
+        given = [name for name in named if name not in ("origin", "center")]
+        if given:
+            return f"{body}.{given[0]}"
+        return f"mass centre of {body}" if _same(self.system.scope.mass_properties(body).com, r) else body
 
     def force(self, vector: Vector, axes: str | None = None) -> Vector:
         """A vector of a load in this configuration, ground axes."""
@@ -193,23 +220,19 @@ class VelocityPlan:
     def _fields(self) -> dict[str, VelocityField]:
         return {}
 
-    @cached_property
-    def _axes(self) -> Axes:
-        return Axes(self.system.motion)
-
     def _six(self, body: str) -> tuple[Scalar, ...]:
         return self.velocities[self.system.motion.index[body]]
 
     def _in_ground(self, body: str, components: Sequence[Scalar]) -> Vector:
         """Vector in ground axes of components in the axes of the body's equations."""
         vector = Vector(components)
-        if self._axes.plane:
+        if self.system.scope.model.space == "plane":
             return vector
         R = substituted([x for row in self.system.motion.link(body).pose.R for x in row], self.at)
         rotation = (Vector(R[0:3]), Vector(R[3:6]), Vector(R[6:9]))
         return Matrix.of(rotation) @ vector
 
-    @property
+    @cached_property
     def blocks(self) -> tuple[RigidBlock, ...]:
         """The blocks that move, in the order of the model; what is in none of them stays at rest."""
         groups: list[_Group] = []
@@ -229,6 +252,11 @@ class VelocityPlan:
                 groups.append(_Group([_member(self, member, numbers)]))
         blocks = [_joined(self, group.parts) for group in groups]
         return (*blocks, *_single_nodes(self, blocks))
+
+    @property
+    def numbered_blocks(self) -> dict[str, RigidBlock]:
+        """{I: the first block that moves, II: the next, ...}, by the numerals of textbooks."""
+        return {_numeral(k): block for k, block in enumerate(self.blocks, start=1)}
 
     @property
     def turning_by_one(self) -> Scalar:
@@ -255,6 +283,10 @@ class VelocityPlan:
         following = [f"{other} {doing} {how}" for other, (_, doing, how) in others[:MOST_MOTIONS]]
         following += [f"{len(others) - MOST_MOTIONS} more blocks"] if len(others) > MOST_MOTIONS else []
         return f"{name} can {verb} {how}" + (f", with it {' and '.join(following)}" if following else "")
+
+
+def _same(a: Vector, b: Vector) -> bool:
+    return all(is_zero(x - y) for x, y in zip(a, b, strict=True))
 
 
 # -------- blocks ----------------------------------------------------------------------------------------------
@@ -295,8 +327,8 @@ class RigidBlock:
         return plan.center(VelocityField(v=self.velocity, w=self.spin))
 
 
-def numeral(number: int) -> str:
-    """Roman numeral by which textbooks name a block: I, II, III, IV, ..."""
+def _numeral(number: int) -> str:
+    """Roman numeral: I, II, III, IV, ..."""
     text = ""
     for value, letters in ((10, "X"), (9, "IX"), (5, "V"), (4, "IV"), (1, "I")):
         text += letters * (number // value)

@@ -27,23 +27,11 @@ from eomgen.mechanics.statics.forces_in_sections import SectionPiece as SectionP
 # X for a unit load that travels along the spans
 from eomgen.mechanics.statics.influence import InfluenceLine as InfluenceLine
 
-# One load of the structure
-from eomgen.mechanics.statics.virtual_work import Acting as Acting
-
-# Condition for a contact to be in the assumed state
-from eomgen.mechanics.statics.virtual_work import RestCondition as RestCondition
-
 # One reaction, or one unknown of the loads
 from eomgen.mechanics.statics.virtual_work import StaticReaction as StaticReaction
 
 # A structure at rest
 from eomgen.mechanics.statics.virtual_work import StaticReactions as StaticReactions
 
-# A sum of indeterminate reactions that is determinate
-from eomgen.mechanics.statics.virtual_work import StaticSum as StaticSum
-
 # along * R + sum of works = 0
 from eomgen.mechanics.statics.virtual_work import WorkEquation as WorkEquation
-
-# The virtual work of one load, not 0
-from eomgen.mechanics.statics.virtual_work import WorkTerm as WorkTerm

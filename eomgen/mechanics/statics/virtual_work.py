@@ -37,6 +37,7 @@ from eomgen.symbolic.expression import (
     Node,
     Reference,
     Scalar,
+    Vector,
     depends_on,
     function,
     over,
@@ -67,6 +68,10 @@ class Acting:
     def work(self, plan: VelocityPlan) -> Scalar:
         """Its virtual work in a motion, not written out."""
         return plan.work_of_effects(self.effects) if self.load is None else plan.work(self.load)
+
+    def displaced(self, plan: VelocityPlan) -> list[tuple[str, Vector | None, Vector | None]]:
+        """(where it works, displacement of that point, rotation of the body), as far as it works on them."""
+        return [(f"joint of {self.name}", None, None)] if self.load is None else plan.displaced(self.load)
 
     @property
     def parts(self) -> tuple[Scalar, ...]:

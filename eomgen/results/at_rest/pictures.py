@@ -54,7 +54,7 @@ def statics_picture(found: StaticReactions, sections: Sections, influence: Influ
     missing = missing_values(model)
     scene = StaticScene(found, not missing)
     beams = list(sections.found.values())[:MOST_COLUMNS]
-    bodies = beams or list(sections_in_space(found.balance).values())[:MOST_COLUMNS]
+    bodies = beams or list(sections_in_space(found).values())[:MOST_COLUMNS]
     rows = len(LETTERS if beams else IN_SPACE) if bodies else 0
     line = influence if not missing else None
     heights = [
@@ -81,7 +81,7 @@ def picture_checks(
     found: StaticReactions, sections: Sections, influence: InfluenceLine | None, panels: Sequence[DrawnPanel]
 ) -> Iterator[Check]:
     """Checks of the picture: its diagrams and its influence line by their panels, the arrows by their strokes."""
-    in_space = {} if missing_values(found.system.scope.model) else sections_in_space(found.balance)
+    in_space = {} if missing_values(found.system.scope.model) else sections_in_space(found)
     yield from structure_pictured(found, {**sections.found, **in_space}, influence, panels, pushes_on(found))
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -39,25 +39,15 @@ from eomgen.documents import (
 from eomgen.errors import RunFailed, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.equilibrium import (
-    Curve,
-    Equilibria,
-    Equilibrium,
-    RestingReactions,
-    Stability,
-    StaticEquations,
-)
-from eomgen.mechanics.free_bodies import RigidBlock, VelocityPlan
+from eomgen.mechanics.equilibrium import Equilibria, Equilibrium, RestingReactions
 from eomgen.mechanics.start import shown_numbers
 from eomgen.mechanics.statics import (
     ContactsAtStart,
     InfluenceLine,
-    RestCondition,
-    StaticReaction,
     StaticReactions,
     WorkEquation,
 )
-from eomgen.model import Model, ModelOrPath, Unit, Values, model_at
+from eomgen.model import Model, ModelOrPath, Values, model_at
 from eomgen.proof import (
     Certificate,
     Check,
@@ -128,20 +118,15 @@ class Statics(Result):
         )
 
     @cached_property
-    def conditions(self) -> tuple[RestCondition, ...]:
-        """Conditions on contacts that can open or slide."""
-        return self.found.conditions
-
-    @cached_property
     def broken(self) -> tuple[str, ...]:
         """Violated conditions of contacts, in words: then the structure is not at rest like this."""
-        margins = self._numbers([(c.broken, c.margin) for c in self.conditions])
+        margins = self._numbers([(c.broken, c.margin) for c in self.found.conditions])
         return tuple(words for words, margin in margins.items() if margin < -tolerances.COMPUTED)
 
     @cached_property
     def sections(self) -> Sections:
         """N, V and M of every body that is a beam."""
-        return sections_of(self.found.balance)
+        return sections_of(self.found)
 
     @cached_property
     def exact(self) -> dict[str, str | None]:
@@ -151,7 +136,7 @@ class Statics(Result):
     @cached_property
     def values(self) -> dict[str, float]:
         """{reaction: its number} [N, N m], of those that have one."""
-        sums = [(sum_name(self.found, each), each.value) for each in self.found.sums]
+        sums = [(sum_name(self.found, each.combination), each.value) for each in self.found.sums]
         return self._numbers([(r.name, r.value) for r in self.found.reactions if r.value is not None] + sums)
 
     def _numbers(self, pairs: Sequence[tuple[str, Scalar]]) -> dict[str, float]:
@@ -184,7 +169,7 @@ class Statics(Result):
     @cached_property
     def derivation(self) -> Document:
         """The solution, step by step."""
-        contacts = (*contacts_step(self.conditions, self.broken), *ranges_step(self.found))
+        contacts = (*contacts_step(self.found, self.broken), *ranges_step(self.found))
         influence = () if self.influence is None else (influence_step(self.influence),)
         return statics_derivation(self.found, self.values, (*contacts, *section_steps(self.sections), *influence))
 
@@ -202,25 +187,28 @@ class Statics(Result):
                 "count": self.found.count[0],
                 "formula": self.found.count[1],
             },
-            "reactions": {reaction.name: self._reaction(reaction) for reaction in self.found.reactions},
+            "reactions": {reaction.name: self._reaction(reaction.name) for reaction in self.found.reactions},
             "self_stresses": [
                 {structure.names[j]: to_text(x) for j, x in stress.items()} for stress in structure.stresses
             ],
             "sums": {
-                (name := sum_name(self.found, each)): Quantity(
+                (name := sum_name(self.found, each.combination)): Quantity(
                     to_text(each.value), self.values.get(name), each.unit, "equilibrium"
                 )
                 for each in self.found.sums
             },
             "sections": section_payload(self.sections),
             "influence": None if self.influence is None else influence_payload(self.influence),
-            "contacts": [{"tie": c.constraint, "kind": c.kind, "margin": to_text(c.margin)} for c in self.conditions],
+            "contacts": [
+                {"tie": c.constraint, "kind": c.kind, "margin": to_text(c.margin)} for c in self.found.conditions
+            ],
             "broken": list(self.broken),
             "rest_range": [vars(each) for each in self.found.ranges],
             "agree": self.ok,
         }
 
-    def _reaction(self, reaction: StaticReaction) -> Quantity:
+    def _reaction(self, name: str) -> Quantity:
+        reaction = self.found.by_name[name]
         beside = {
             "by_equilibrium": _text(reaction.balanced),
             "work": None if reaction.work is None else _work(reaction.work),
@@ -228,7 +216,7 @@ class Statics(Result):
         }
         method = "equilibrium" if reaction.work is None else "virtual work"
         message = None if reaction.value is not None else "statically indeterminate"
-        exact, value = self.exact[reaction.name], self.values.get(reaction.name)
+        exact, value = self.exact[name], self.values.get(name)
         return Quantity(exact, value, reaction.unit, method, message, beside)
 
     @property
@@ -257,25 +245,27 @@ def _text(value: Scalar | None) -> str | None:
 def _work(equation: WorkEquation) -> dict[str, Any]:
     """The released mechanism, per unit of its scale, and the equation of virtual work: along * R + sum of terms = 0."""
     return {
-        "mechanism": [_block(equation.plan, block) for block in equation.plan.blocks],
+        "mechanism": list(_blocks(equation)),
         "along": to_text(equation.along),
         "terms": [{"load": term.acting.name, "work": to_text(term.work)} for term in equation.terms],
         "value": to_text(equation.value),
     }
 
 
-def _block(plan: VelocityPlan, block: RigidBlock) -> dict[str, Any]:
-    """JSON entry of a block that moves as one: parts, spin, velocity at the origin; in the plane its centre too."""
-    moved = {
-        "parts": list(block.parts),
-        "rotation": [to_text(x) for x in block.spin],
-        "shift_at_origin": [to_text(plan.simple(x)) for x in block.velocity],
-    }
-    if plan.system.scope.model.space != "plane":
-        return moved
-    center = block.center(plan)
-    found = {"center": center.place, "direction": center.direction}
-    return {**moved, **{key: v and [to_text(plan.simple(x)) for x in v[:2]] for key, v in found.items()}}
+def _blocks(equation: WorkEquation) -> Iterator[dict[str, Any]]:
+    """JSON entries of what moves as one: parts, spin, velocity at the origin; in the plane its centre too."""
+    plan = equation.plan
+    for block in plan.blocks:
+        moved: dict[str, Any] = {
+            "parts": list(block.parts),
+            "rotation": [to_text(x) for x in block.spin],
+            "shift_at_origin": [to_text(plan.simple(x)) for x in block.velocity],
+        }
+        if plan.system.scope.model.space == "plane":
+            center = block.center(plan)
+            found = {"center": center.place, "direction": center.direction}
+            moved |= {key: v and [to_text(plan.simple(x)) for x in v[:2]] for key, v in found.items()}
+        yield moved
 
 
 @doing("the forces at rest")
@@ -396,15 +386,18 @@ def _place(place: Equilibrium) -> dict[str, Any]:
         "coordinates": {q.name: _of(place, q) for q in place.statics.system.symbols.q},
         "states": {z.name: _of(place, z) for z in place.statics.system.symbols.z},
         "multipliers": {lam.name: _of(place, lam) for lam in place.statics.lam},
-        "stability": _stability_entry(place.stability),
+        "stability": _stability_entry(place),
         "pulling": list(place.pulling),
         "passed": list(place.passed),
-        "family": None if place.curve is None else _family(place, place.curve),
+        "family": _family(place),
     }
 
 
-def _family(place: Equilibrium, curve: Curve) -> dict[str, Any]:
-    """The places of the curve that were met along it, by coordinate [SI]."""
+def _family(place: Equilibrium) -> dict[str, Any] | None:
+    """The places of the curve that were met along it, by coordinate [SI]; None of a place by itself."""
+    curve = place.curve
+    if curve is None:
+        return None
     columns = {q.name: curve.points[:, k].tolist() for k, q in enumerate(place.statics.q)}
     return {"closed": curve.closed, "places": columns}
 
@@ -433,7 +426,8 @@ def _of(place: Equilibrium, node: Node) -> Quantity:
     return Quantity(exact, place.numbers.get(node), unit=None)
 
 
-def _stability_entry(stability: Stability) -> dict[str, Any]:
+def _stability_entry(place: Equilibrium) -> dict[str, Any]:
+    stability = place.stability
     return {
         "kind": stability.kind,
         "why": stability.why,
@@ -504,15 +498,15 @@ def equilibrium_steps(found: Equilibria, reactions: RestingReactions | None) -> 
     """The balance at rest, every place, its stability, and the reactions at the nearest one."""
     scope = found.statics.system.scope
     reader = Reader(positive=scope.positive)
-    steps: tuple[Step, ...] = (rest_balance_step(found.statics, reader), _places(found))
+    steps: tuple[Step, ...] = (rest_balance_step(found, reader), _places(found))
     if reactions:
         steps = (*steps, _stability_step(found), *_reaction_steps(found.found[0], reactions))
     return reader.with_names(steps, scope)
 
 
-def rest_balance_step(statics: StaticEquations, reader: Reader) -> Step:
+def rest_balance_step(found: Equilibria, reader: Reader) -> Step:
     """Step with the equations by which the virtual work vanishes for every displacement."""
-    empty = _nowhere(reader, statics)
+    statics, empty = found.statics, _nowhere(reader, found)
     if not statics.q:
         return Step("balance", "Balance at rest", empty or (prose("No force changes with the place."),))
     law = REST_WITH_CONSTRAINTS if statics.lam else REST
@@ -522,7 +516,7 @@ def rest_balance_step(statics: StaticEquations, reader: Reader) -> Step:
     held = [*([rates_too] if statics.system.symbols.z else []), *open_at_rest(statics.system)]
     if statics.held:
         held += [prose(f"Driven coordinates are held at their start: {', '.join(statics.held)}.")]
-    forces = _all_forces(reader, statics)
+    forces = _all_forces(reader, found)
     own = len(statics.phi) - statics.norms
     constraints = [Formula((reader.shown(x), 0)) for x in statics.phi[:own]]
     constraints += [Formula((x + 1, 1)) for x in statics.phi[own:]]  # of quaternions, which are read with it
@@ -533,19 +527,20 @@ def rest_balance_step(statics: StaticEquations, reader: Reader) -> Step:
     return Step("balance", "Balance at rest", lines)
 
 
-def _nowhere(reader: Reader, statics: StaticEquations) -> tuple[Statement, ...]:
+def _nowhere(reader: Reader, found: Equilibria) -> tuple[Statement, ...]:
     """The forces that the values of the parameters make vanish wherever the system is."""
-    if not statics.nowhere:
+    pairs = [(Name("Q", by=q), force) for q, force in found.statics.nowhere]
+    if not pairs:
         return ()
-    pairs = [(Name("Q", by=q), force) for q, force in statics.nowhere]
     return (
         prose("The values of the parameters make vanish, wherever the system is:"),
         *page(reader, pairs, then=(0,)),
     )
 
 
-def _all_forces(reader: Reader, statics: StaticEquations) -> tuple[Statement, ...]:
+def _all_forces(reader: Reader, found: Equilibria) -> tuple[Statement, ...]:
     """The equation along every coordinate; with constraints the multipliers stand in it next to Q."""
+    statics = found.statics
     if not statics.lam:
         z = statics.system.symbols.z
         balance = zip(statics.q, statics.forces, strict=True)
@@ -571,10 +566,9 @@ def _places(found: Equilibria) -> Step:
     if not found.found:
         statements.append(prose(_how_many(found)))
         return Step("places", "Equilibria", tuple(statements))
-    units = _declared_units(found.statics.system.scope.model)
-    rows = [row for k, place in enumerate(found.found, start=1) for row in _rows(k, place, units)]
+    rows = [row for k, place in enumerate(found.found, start=1) for row in _rows(k, place)]
     grid = narrow_grid(("place", "coordinate", "exact", "value", "unit", "stability"), rows)
-    curves = [_curve(k, place, place.curve) for k, place in enumerate(found.found, start=1) if place.curve is not None]
+    curves = [line for k, place in enumerate(found.found, start=1) for line in _curve(k, place)]
     passed = [_passed(k, name) for k, place in enumerate(found.found, start=1) for name in place.passed]
     return Step("places", "Equilibria", (*statements, prose(_how_many(found)), grid, *passed, *curves))
 
@@ -583,14 +577,11 @@ def _passed(number: int, name: str) -> Statement:
     return prose(f"But place {number} lies behind '{name}', which lets nothing pass: it does not hold.")
 
 
-def _declared_units(model: Model) -> dict[str, Unit]:
-    """Units of the coordinates and states that have one in the file."""
-    units = {name: q.unit for name, q in model.coordinates.items()} | {n: z.unit for n, z in model.states.items()}
-    return {name: unit for name, unit in units.items() if unit is not None}
-
-
-def _curve(number: int, place: Equilibrium, curve: Curve) -> Statement:
+def _curve(number: int, place: Equilibrium) -> Iterator[Statement]:
     """Statement on a curve of equilibria: the coordinate that moves along it, those that follow, those that stay."""
+    curve = place.curve
+    if curve is None:
+        return
     model, names = place.statics.system.scope.model, [q.name for q in place.statics.q]
     points = curve.points[:, : len(names)]
     moved = np.max(points, axis=0) - np.min(points, axis=0)
@@ -611,7 +602,7 @@ def _curve(number: int, place: Equilibrium, curve: Curve) -> Statement:
         plus = "+" if float(offsets[sign or 1][0]) >= 0 else "-"
         other = f"{'-' if sign < 0 else ''}{names[first]} {plus} {away}"
         reported.append(f"{name} = {other}" if sign else f"{name} follows it")
-    return prose(f"Place {number} is one of a curve of equilibria, a family: {', '.join(reported)}.")
+    yield prose(f"Place {number} is one of a curve of equilibria, a family: {', '.join(reported)}.")
 
 
 def _how_many(found: Equilibria) -> str:
@@ -630,8 +621,10 @@ def _places_in_words(n: int) -> str:
     return "none" if n == 0 else count(n, "equilibrium", "equilibria")
 
 
-def _rows(number: int, place: Equilibrium, units: Mapping[str, Unit]) -> list[tuple[Cell, ...]]:
+def _rows(number: int, place: Equilibrium) -> list[tuple[Cell, ...]]:
     """A coordinate a row, in the unit that the file declares."""
+    model = place.statics.system.scope.model
+    units = {name: q.unit for name, q in model.coordinates.items()} | {n: z.unit for n, z in model.states.items()}
     rows: list[tuple[Cell, ...]] = []
     for k, q in enumerate(place.statics.system.symbols.places):
         exact: Cell = place.exact.get(q, "")
@@ -654,11 +647,12 @@ def _stability_step(found: Equilibria) -> Step:
     words = prose("The second variation of the potential energy decides: ", *law, ".")
     statements: list[Statement] = [] if found.statics.system.symbols.z else [words]
     for number, place in enumerate(found.found, start=1):
-        statements += _verdict(number, place.stability)
+        statements += _verdict(number, place)
     return Step("stability", "Stability", tuple(statements))
 
 
-def _verdict(number: int, stability: Stability) -> list[Statement]:
+def _verdict(number: int, place: Equilibrium) -> list[Statement]:
+    stability = place.stability
     words: list[Statement] = [prose(f"Place {number}: {stability.kind}; {stability.why}.")]
     if not stability.K or len(stability.along) > MOST_SHOWN:
         return words

@@ -1,4 +1,4 @@
-"""Reactions -> the steps about section forces: N, V and M from station to station; influence lines."""
+"""StaticReactions -> the steps about section forces: N, V and M from station to station; influence lines."""
 
 from __future__ import annotations
 
@@ -9,10 +9,8 @@ from typing import Any
 from eomgen.documents import Formula, Grid, Law, Name, Side, Statement, Step, cell_text, prose
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.free_bodies import Reactions
-from eomgen.mechanics.statics import InfluenceLine, SectionForces
+from eomgen.mechanics.statics import InfluenceLine, SectionForces, StaticReactions
 from eomgen.model import is_node
-from eomgen.proof import ReportedSections
 from eomgen.symbolic.expression import Node, Scalar
 from eomgen.symbolic.print import to_text
 
@@ -38,9 +36,9 @@ class Sections:
     reasons: dict[str, str]
 
 
-def sections_of(reactions: Reactions) -> Sections:
+def sections_of(statics: StaticReactions) -> Sections:
     """Section forces of every body in the plane; none in space."""
-    system = reactions.balance.system
+    system, reactions = statics.system, statics.balance
     found: dict[str, SectionForces] = {}
     reasons: dict[str, str] = {}
     bodies = [link.name for link in system.motion.links if not is_node(link.name)]
@@ -53,9 +51,9 @@ def sections_of(reactions: Reactions) -> Sections:
     return Sections(found, reasons)
 
 
-def sections_in_space(reactions: Reactions) -> dict[str, SectionForces]:
+def sections_in_space(statics: StaticReactions) -> dict[str, SectionForces]:
     """Section forces of every body in space that is a beam and not a rod of a truss alone."""
-    system = reactions.balance.system
+    system, reactions = statics.system, statics.balance
     found = {}
     for link in system.motion.links if system.scope.model.space == "space" else ():
         if not is_node(link.name):
@@ -91,8 +89,8 @@ def section_payload(sections: Sections) -> dict[str, Any]:
 
 def reported_sections(
     sections: Sections, steps: Sequence[Step], payload: Mapping[str, Any]
-) -> Iterator[tuple[str, Any]]:
-    """(body, its reported section forces), as they are printed and as the JSON entries give them."""
+) -> Iterator[tuple[str, str, Any, Any]]:
+    """(body, distance along its axis, pieces, extremes), as they are printed and as the JSON entries give them."""
     by_key = {step.key: step.statements for step in steps}
     for body, forces in sections.found.items():
         printed = by_key[f"section_{body}"]
@@ -102,8 +100,8 @@ def reported_sections(
         extremes = [dict(zip(("M", "x"), sides[k : k + 2], strict=True)) for k in range(0, len(sides), 2)]
         rows = [dict(zip(heads, row, strict=True)) for row in grid.rows]
         x = _variable(forces).name
-        yield body, ReportedSections(x, rows, extremes)  # type: ignore[arg-type]
-        yield body, ReportedSections(payload[body]["variable"], payload[body]["pieces"], payload[body]["extremes"])
+        yield body, x, rows, extremes
+        yield body, payload[body]["variable"], payload[body]["pieces"], payload[body]["extremes"]
 
 
 def _rows(forces: SectionForces, x: Node) -> Iterator[dict[str, str]]:

@@ -31,24 +31,10 @@ from eomgen.documents import (
     said,
     with_symbols,
 )
-from eomgen.mechanics.free_bodies import (
-    Reactions,
-    RigidBlock,
-    VelocityPlan,
-    numeral,
-)
-from eomgen.mechanics.statics import (
-    Acting,
-    RestCondition,
-    StaticReaction,
-    StaticReactions,
-    StaticSum,
-    WorkEquation,
-    WorkTerm,
-)
-from eomgen.model import BodyPoint, Couple, PointForce, SpreadLoad, is_node
-from eomgen.proof import ReportedBlock, ReportedMotion, ReportedWork
-from eomgen.symbolic.expression import Fraction, Node, Scalar, Vector, is_zero
+from eomgen.mechanics.statics import StaticReactions, WorkEquation
+from eomgen.model import is_node
+from eomgen.proof import ReportedWork
+from eomgen.symbolic.expression import Node, Scalar, Vector, is_zero
 from eomgen.symbolic.print import Notation, Symbol, to_text, upright
 
 METHOD = "statics"
@@ -202,17 +188,17 @@ def _open(statics: StaticReactions, symbols: SymbolsByName, values: Mapping[str,
         rows: list[tuple[Cell, ...]] = []
         for each in statics.sums:
             shown = sum((k * letters[j] for j, k in each.combination.items()), start=0)
-            name = sum_name(statics, each)
+            name = sum_name(statics, each.combination)
             rows.append((shown, each.value, f"{values[name]:.7g}" if name in values else "", each.unit))
         statements.append(prose("Sums in which that leaves no trace have one value:"))
         statements.append(narrow_grid(("sum", "exact", "value", "unit"), rows))
     return (Step("indeterminate", "Self-stresses", tuple(statements)),)
 
 
-def sum_name(statics: StaticReactions, each: StaticSum) -> str:
+def sum_name(statics: StaticReactions, combination: Mapping[int, Scalar]) -> str:
     """Name of a sum as in an output: reaction_x(A) + reaction_x(B)."""
     graph, names = statics.system.scope.graph, statics.structure.names
-    return to_text(sum((k * graph.symbol(names[j]) for j, k in each.combination.items()), start=0))
+    return to_text(sum((k * graph.symbol(names[j]) for j, k in combination.items()), start=0))
 
 
 # -- the reactions -------------------------------------------------------------------------------------
@@ -225,8 +211,8 @@ def static_reactions_step(statics: StaticReactions, symbols: SymbolsByName, valu
         value = reaction.value
         number = f"{values[reaction.name]:.7g}" if reaction.name in values else ""
         exact: Cell = "indeterminate" if value is None else value
-        sense = _sense(statics, reaction, values.get(reaction.name))
-        words = meaning_of(statics.balance, reaction)
+        sense = _sense(statics, reaction.name, values.get(reaction.name))
+        words = meaning_of(statics, reaction.name)
         rows.append((symbols[reaction.name], words, exact, number, reaction.unit, sense))
     if not rows:
         return Step("reactions", "Reactions", (prose("Nothing reacts."),))
@@ -244,25 +230,26 @@ SENSES = {
 """Of a reaction in the plane that is positive, and of one that is negative."""
 
 
-def _sense(statics: StaticReactions, reaction: StaticReaction, value: float | None) -> str:
+def _sense(statics: StaticReactions, reaction: str, value: float | None) -> str:
     """Sense of a reaction in words; "" where there is none, or its sign is not known."""
-    senses = SENSES.get(reaction.name.partition("(")[0])
+    senses = SENSES.get(reaction.partition("(")[0])
     if senses is None or not value or statics.system.scope.model.space != "plane":
         return ""
     return senses[value < 0]
 
 
-def meaning_of(balance: Reactions, reaction: StaticReaction) -> str:
+def meaning_of(statics: StaticReactions, reaction: str) -> str:
     """Meaning of a reaction: its kind, its body, its sense."""
-    if reaction.named is None:
-        about = balance.balance.system.scope.model.unknowns[reaction.name]
+    named = statics.by_name[reaction].named
+    if named is None:
+        about = statics.system.scope.model.unknowns[reaction]
         return getattr(about, "about", None) or "to be found"
-    return said(balance.balance, reaction.named)
+    return said(statics.balance.balance, named)
 
 
 def _works(statics: StaticReactions, symbols: SymbolsByName) -> tuple[Step, ...]:
     return tuple(
-        virtual_work_step(reaction, symbols[reaction.name])
+        virtual_work_step(reaction.name, reaction.work, symbols[reaction.name])
         for reaction in statics.reactions
         if reaction.work is not None
     )
@@ -299,11 +286,11 @@ MARGINS = {
 }
 
 
-def contacts_step(conditions: Sequence[RestCondition], broken: Sequence[str]) -> tuple[Step, ...]:
+def contacts_step(statics: StaticReactions, broken: Sequence[str]) -> tuple[Step, ...]:
     """Step with the conditions on contacts that can open or slide, and those that are violated."""
-    if not conditions:
+    rows = tuple((c.constraint, MARGINS[c.kind], c.margin) for c in statics.conditions)
+    if not rows:
         return ()
-    rows = tuple((c.constraint, MARGINS[c.kind], c.margin) for c in conditions)
     statements: list[Statement] = [
         prose("The contacts are as they were taken while none of these is negative:"),
         Grid(("contact", "what", "formula"), rows),
@@ -348,37 +335,34 @@ TURN, SHIFT = "δθ", "δs"
 LISTED = 8  # parts of a block by name
 
 
-def virtual_work_step(reaction: StaticReaction, symbol: Node) -> Step:
+def virtual_work_step(reaction: str, equation: WorkEquation, symbol: Node) -> Step:
     """Step that derives one reaction from the virtual work of the mechanism that its release leaves."""
-    equation = reaction.work
-    assert equation is not None, "an indeterminate reaction has no equation of work"
-    plan, blocks = equation.plan, equation.plan.blocks
-    if not blocks:
+    if not equation.plan.blocks:
         nothing = prose("Its constraint leaves this motion free, and so bears nothing: ", symbol, " = 0.")
-        return Step(f"work {reaction.name}", f"{reaction.name} by virtual work", (nothing,))
-    delta = _scale(blocks, symbol)
-    statements: list[Statement] = [_released(plan, blocks, symbol, delta), _mechanism(plan, blocks, delta)]
+        return Step(f"work {reaction}", f"{reaction} by virtual work", (nothing,))
+    delta = _scale(equation, symbol)
+    statements: list[Statement] = [_released(equation, symbol, delta), _mechanism(equation, delta)]
     if equation.terms:
-        statements += [prose("The loads do the virtual works:"), _work_terms(plan, equation.terms, delta)]
+        statements += [prose("The loads do the virtual works:"), _work_terms(equation, delta)]
     else:
         statements.append(prose("No load does any work in this motion."))
     statements += [
         prose("The principle of virtual work says", *_without(equation), ":"),
         *_equations(equation, symbol, delta),
     ]
-    return Step(f"work {reaction.name}", f"{reaction.name} by virtual work", tuple(statements))
+    return Step(f"work {reaction}", f"{reaction} by virtual work", tuple(statements))
 
 
-def _scale(blocks: Sequence[RigidBlock], symbol: Node) -> Node:
+def _scale(equation: WorkEquation, symbol: Node) -> Node:
     """The angle where a block turns by 1, else a length."""
-    turns = any(not isinstance(w, Node) and w == 1 for block in blocks for w in block.spin)
+    turns = any(not isinstance(w, Node) and w == 1 for block in equation.plan.blocks for w in block.spin)
     scale: Node = symbol.graph.symbol(TURN if turns else SHIFT)
     return scale
 
 
-def _released(plan: VelocityPlan, blocks: Sequence[RigidBlock], symbol: Node, delta: Node) -> Prose:
+def _released(equation: WorkEquation, symbol: Node, delta: Node) -> Prose:
     """Sentence on the blocks that move once the reaction is released, and those that stay at rest."""
-    still = plan.resting_blocks
+    still, blocks = equation.plan.resting_blocks, equation.plan.blocks
     rest = f"; {_listed(still)} {'stays' if len(still) == 1 else 'stay'} at rest" if still else ""
     many = "one block" if len(blocks) == 1 else f"{len(blocks)} blocks"
     return prose(
@@ -404,7 +388,7 @@ def reported_work(name: str, step: Step, machines: Mapping[str, Any]) -> Reporte
     formulas = [s for s in step.statements if isinstance(s, Formula)]
     if "block" not in grids:
         return None
-    blocks = [ReportedBlock(tuple(x["parts"]), x["rotation"][2], x["shift_at_origin"]) for x in machines["mechanism"]]
+    blocks = [(tuple(x["parts"]), x["rotation"][2], x["shift_at_origin"]) for x in machines["mechanism"]]
     loads = grids.get("load", [])
     left, last = formulas[0].sides[0], formulas[1].sides[1]
     return ReportedWork(
@@ -425,40 +409,42 @@ def _by_head(grid: Grid, row: Sequence[Cell]) -> dict[str, Any]:
     return dict(zip(map(cell_text, grid.head), row, strict=True))
 
 
-def _reported_motion(row: Mapping[str, Any]) -> ReportedMotion:
-    """Columns in which nothing stands are left out, and a centre at infinity is a word."""
+def _reported_motion(row: Mapping[str, Any]) -> tuple[Any, Any, Any, str]:
+    """(centre, turn, shift, where): columns in which nothing stands are left out, a centre at infinity is a word."""
     spin, *shift = (0 if isinstance(x := row.get(k, ""), str) else x for k in ("rotation", "shift x", "shift y"))
     x = row.get("centre x", "")
-    return ReportedMotion(None if isinstance(x, str) else (x, row["centre y"]), spin, shift, row.get("at", ""))
+    return None if isinstance(x, str) else (x, row["centre y"]), spin, shift, row.get("at", "")
 
 
 # -- the mechanism -----------------------------------------------------------------------------------
 
 
-def _mechanism(plan: VelocityPlan, blocks: Sequence[RigidBlock], delta: Node) -> Grid:
+def _mechanism(equation: WorkEquation, delta: Node) -> Grid:
     """Table of the blocks with their centres of rotation and rotations, or their displacements."""
+    plan = equation.plan
     if plan.system.scope.model.space != "plane":
-        return _mechanism_in_space(plan, blocks, delta)
+        return _mechanism_in_space(equation, delta)
     rows: list[tuple[Cell, ...]] = []
-    for number, block in enumerate(blocks, start=1):
+    for numeral, block in plan.numbered_blocks.items():
         center = block.center(plan)
         place: tuple[Cell, Cell] = ("at infinity", "") if center.place is None else (center.place[0], center.place[1])
         moved = [plan.simple(x) for x in center.direction or (0, 0, 0)]
         shift = ("", "") if center.place is not None else (moved[0] * delta, moved[1] * delta)
-        rows.append((numeral(number), _parts(plan, block, blocks), *place, block.spin[2] * delta, *shift))
+        rows.append((numeral, _parts(equation, numeral), *place, block.spin[2] * delta, *shift))
     return _narrow(("block", "moves", "centre x", "centre y", "rotation", "shift x", "shift y"), rows)
 
 
-def _mechanism_in_space(plan: VelocityPlan, blocks: Sequence[RigidBlock], delta: Node) -> Grid:
+def _mechanism_in_space(equation: WorkEquation, delta: Node) -> Grid:
     """Table of the bodies with their rotations and the displacements of their mass centres; nodes are only named."""
+    plan, blocks = equation.plan, equation.plan.numbered_blocks
     rows: list[tuple[Cell, ...]] = []
-    for number, block in enumerate(blocks, start=1):
+    for numeral, block in blocks.items():
         if not block.bodies:
             continue
         moved = plan.center_velocity(block.bodies[0])
         spin = tuple(plan.simple(x) * delta for x in block.spin)
-        rows.append((numeral(number), _parts(plan, block, blocks), *spin, *(x * delta for x in moved)))
-    nodes = tuple(node for block in blocks for node in block.nodes)
+        rows.append((numeral, _parts(equation, numeral), *spin, *(x * delta for x in moved)))
+    nodes = tuple(node for block in blocks.values() for node in block.nodes)
     if nodes:
         rows.append(("nodes", _listed(nodes), *("",) * 6))
     axes = ("x", "y", "z")
@@ -466,8 +452,10 @@ def _mechanism_in_space(plan: VelocityPlan, blocks: Sequence[RigidBlock], delta:
     return _narrow(head, rows)
 
 
-def _parts(plan: VelocityPlan, block: RigidBlock, blocks: Sequence[RigidBlock]) -> str:
-    """Its bodies, members and nodes; a truss as one where all of it is in the block."""
+def _parts(equation: WorkEquation, numeral: str) -> str:
+    """Bodies, members and nodes of a block; a truss as one where all of it is in the block."""
+    plan, blocks = equation.plan, equation.plan.numbered_blocks
+    block = blocks[numeral]
     if len(plan.moving) == len(plan.system.motion.links) and len(blocks) == 1:
         return "the whole structure"
     of_truss = Counter(truss for truss, _, _ in plan.system.scope.model.truss_members)
@@ -480,13 +468,13 @@ def _parts(plan: VelocityPlan, block: RigidBlock, blocks: Sequence[RigidBlock]) 
 # -- works -------------------------------------------------------------------------------------------
 
 
-def _work_terms(plan: VelocityPlan, terms: Sequence[WorkTerm], delta: Node) -> Grid:
+def _work_terms(equation: WorkEquation, delta: Node) -> Grid:
     """Table of the loads that do work, with the displacements of their points and their works."""
-    plane = plan.system.scope.model.space == "plane"
+    plane = equation.plan.system.scope.model.space == "plane"
     size = 2 if plane else 3
     rows: list[tuple[Cell, ...]] = []
-    for term in terms:
-        *before, last = _points_of(plan, term.acting)
+    for term in equation.terms:
+        *before, last = term.acting.displaced(equation.plan)
         for where, moved, turned in before:
             rows.append((term.acting.name, where, *_moved(moved, turned, size, delta), ""))
         where, moved, turned = last
@@ -495,55 +483,11 @@ def _work_terms(plan: VelocityPlan, terms: Sequence[WorkTerm], delta: Node) -> G
     return _narrow(("load", "at", *(f"shift {k}" for k in "xyz"[:size]), *turning, "work"), rows)
 
 
-Displaced = tuple[str, Vector | None, Vector | None]
-"""(where a load acts, displacement of that point, rotation of the body): of what it works on."""
-
-
-def _points_of(plan: VelocityPlan, acting: Acting) -> list[Displaced]:
-    load = acting.load
-    if load is None:
-        return [(f"joint of {acting.name}", None, None)]
-    if isinstance(load, Couple):
-        return [(load.body, None, plan.spin(load.body))]
-    if isinstance(load, PointForce):
-        return [(point_name(plan, load.place), plan.velocity(load.place), None)]
-    return _along(plan, load)
-
-
-def _along(plan: VelocityPlan, load: SpreadLoad) -> list[Displaced]:
-    """Displaced points of a spread load: the middle of a uniform one, where its resultant acts; else both ends."""
-    a, b = (point_name(plan, place) for place in (load.start, load.end))
-    v, w = (plan.velocity(place) for place in (load.start, load.end))
-    if not _same(load.at_start, load.at_end):
-        return [(a, v, None), (b, w, None)]
-    middle = Vector(map(plan.simple, Fraction(1, 2) * (v + w)))
-    return [(f"middle of {a}, {b}", middle, None)]
-
-
 def _moved(moved: Vector | None, turned: Vector | None, size: int, delta: Node) -> tuple[Cell, ...]:
     shift: tuple[Cell, ...] = ("",) * size if moved is None else tuple(x * delta for x in moved[:size])
     if turned is None:
         return (*shift, *("",) * (1 if size == 2 else 3))
     return (*shift, *(x * delta for x in (turned[2:] if size == 2 else turned)))
-
-
-def point_name(plan: VelocityPlan, place: BodyPoint) -> str:
-    """A place by the name of the point of the body that is there."""
-    body, r = place
-    motion = plan.system.motion
-    if body is None:
-        return "the ground"
-    if is_node(body):
-        return body
-    named = [name for name, at in motion.points[body].items() if _same(at, r)]
-    given = [name for name in named if name not in ("origin", "center")]
-    if given:
-        return f"{body}.{given[0]}"
-    return f"mass centre of {body}" if _same(motion.scope.mass_properties(body).com, r) else body
-
-
-def _same(a: Vector, b: Vector) -> bool:
-    return all(is_zero(x - y) for x, y in zip(a, b, strict=True))
 
 
 # -- the equation --------------------------------------------------------------------------------------
