@@ -109,7 +109,7 @@ def _package() -> bytes | None:
     if not root.is_dir():
         return None
     found = sha256(platform.python_version().encode() + platform.platform().encode())
-    for path in sorted(root.rglob("*.py")):
+    for path in sorted((*root.rglob("*.py"), *root.rglob("*.json"))):
         content = path.read_bytes()
         found.update(f"{path.relative_to(root)}\0{len(content)}\0".encode() + content)
     beside_numpy = Path(numpy.__file__).parents[1]

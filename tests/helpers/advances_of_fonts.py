@@ -1,6 +1,6 @@
-"""Table of the advances of the letters of formulas: of our pages' font, and of the one that papers are set in.
+"""Advances of the letters of formulas [thousandths of their size]: of our pages' font, and of the one of papers.
 
-python tests/helpers/advances_of_fonts.py > eomgen/symbolic/print/advances.py
+python tests/helpers/advances_of_fonts.py > eomgen/symbolic/print/advances.json
 
 It needs fonttools, brotli and typst, whose program carries the letters of papers.
 """
@@ -8,6 +8,7 @@ It needs fonttools, brotli and typst, whose program carries the letters of paper
 from __future__ import annotations
 
 import io
+import json
 from pathlib import Path
 from typing import Any
 
@@ -18,17 +19,6 @@ ITALIC = "".join(chr(c) for c in range(0x1D434, 0x1D468) if c != 0x1D455) + "ℎ
 GREEK = "".join(map(chr, range(0x1D6FC, 0x1D716))) + "ΓΔΘΛΞΠΣΥΦΨΩ"
 SIGNS = "∂∑⋅×±≤≥≠≈∞→∫…⋯∘′√°−·"
 LINE = 108  # characters of a line of the table
-
-HEAD = '''"""Advances of the letters of formulas, in thousandths of their size; made by the command below.
-
-python tests/helpers/advances_of_fonts.py > eomgen/symbolic/print/advances.py
-
-A letter that is slanted in a formula stands there as that letter of its own, h as \\u210e; after each bracket stand the
-larger ones that are drawn for it.
-"""
-
-# fmt: off
-'''
 
 
 def fonts() -> dict[str, Any]:
@@ -41,7 +31,7 @@ def fonts() -> dict[str, Any]:
     while (place := program.find(b"OTTO", place)) >= 0:
         found = TTFont(io.BytesIO(program[place:]), lazy=True)
         if found["name"].getDebugName(4) == PAPER:
-            return {"PAGE": TTFont(OWN), "PAPER": found}
+            return {"page": TTFont(OWN), "paper": found}
         place += 4
     raise ValueError(f"{PAPER} was not found")
 
@@ -65,22 +55,18 @@ def larger(font: Any, sign: str) -> list[int]:
 
 
 def table() -> str:
-    """The module."""
-    lines = [HEAD]
+    """The file, a few letters a line."""
+    found = []
     for name, font in fonts().items():
-        lines.append(f"{name} = {{")
-        line = ""
-        for c, advance in advances(font).items():
-            word = f"{c!a}: {advance}, "
-            if len(line) + len(word) > LINE:
-                lines.append(f"    {line.rstrip()}")
-                line = ""
-            line += word
-        lines += [f"    {line.rstrip()}", "}"]
-        lines.append(f"{name}_LARGER = {{")
-        lines += [f"    {c!a}: {tuple(larger(font, c))}," for c in "([{|√"]
-        lines.append("}")
-    return "\n".join(lines)
+        lines = [""]
+        for word in (f"{json.dumps(c)}: {advance}, " for c, advance in advances(font).items()):
+            if len(lines[-1]) + len(word) > LINE:
+                lines.append("")
+            lines[-1] += word
+        letters = "\n".join(f"    {line.rstrip()}" for line in lines).rstrip(",")
+        brackets = ",\n".join(f"    {json.dumps(c)}: {larger(font, c)}" for c in "([{|√")
+        found.append(f'"{name}": {{\n  "letters": {{\n{letters}\n  }},\n  "larger": {{\n{brackets}\n  }}\n}}')
+    return "{\n" + ",\n".join(found) + "\n}"
 
 
 if __name__ == "__main__":

@@ -8,15 +8,15 @@ a fraction is too wide. A bracket that is opened has a fixed size, as \left may 
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import field
-from functools import lru_cache
+from functools import cache, lru_cache
+from importlib import resources
 from itertools import pairwise
 
 from eomgen.frozen import dataclass
-from eomgen.symbolic.print.advances import PAGE, PAGE_LARGER, PAPER_LARGER
-from eomgen.symbolic.print.advances import PAPER as PAPER_LETTERS
 from eomgen.symbolic.print.names import LETTERS
 
 SHARE = 0.5  # of a line that a bracket takes before it is opened rather than the factors beside it parted
@@ -279,18 +279,22 @@ _BIG = re.compile(r"\\[bB]ig+[lr]?$")
 
 @dataclass(frozen=True, slots=True)
 class Font:
-    """Advances of the letters of a font [thousandths of their size], and of the larger forms of its brackets."""
+    """Advances of the letters of a font [thousandths of their size], and of the larger forms of its brackets.
 
-    advances: Mapping[str, int]
+    `advances.json` has them, made from the fonts by `python tests/helpers/advances_of_fonts.py`: a letter that is
+    slanted in a formula as that letter of its own, h as \u210e.
+    """
+
+    letters: Mapping[str, int]
     larger: Mapping[str, Sequence[int]]
 
     def width(self, letters: str, *, slanted: bool = False) -> float:
         """Letters one after the other [em]."""
-        return sum(self.advances.get(_slanted(c) if slanted else c, UNKNOWN) for c in letters) / 1000
+        return sum(self.letters.get(_slanted(c) if slanted else c, UNKNOWN) for c in letters) / 1000
 
     def bracket(self, sign: str, height: int) -> float:
         """A bracket round content of a height: 0 letters, 1 with exponents, 2 fractions, 3 what is higher."""
-        forms = self.larger.get(sign) or (self.advances.get(sign, UNKNOWN),)
+        forms = self.larger.get(sign) or (self.letters.get(sign, UNKNOWN),)
         return forms[round(LARGER[height] * (len(forms) - 1))] / 1000
 
 
@@ -303,7 +307,11 @@ def _slanted(c: str) -> str:
     return chr(0x1D6FC + _SMALL.index(c)) if c in _SMALL else c
 
 
-FONTS = {"page": Font(PAGE, PAGE_LARGER), "paper": Font(PAPER_LETTERS, PAPER_LARGER)}
+@cache
+def _fonts() -> dict[str, Font]:
+    """{"page": that of our pages, "paper": that of papers}"""
+    text = resources.files("eomgen.symbolic.print").joinpath("advances.json").read_text(encoding="utf-8")
+    return {name: Font(**font) for name, font in json.loads(text).items()}
 
 
 @dataclass(slots=True)
@@ -515,7 +523,7 @@ def _folded(items: list[TexItem], font: Font, style: int) -> list[TexItem]:
 @lru_cache(maxsize=KEPT)
 def parsed(tex: str, font: str = "paper") -> tuple[TexItem, ...]:
     """The parts of a formula, as far as lines can end between them."""
-    return tuple(_Reader(tex, FONTS[font]).until(0, 0)[0])
+    return tuple(_Reader(tex, _fonts()[font]).until(0, 0)[0])
 
 
 def width_of(tex: str, font: str = "paper") -> float:
