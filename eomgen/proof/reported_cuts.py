@@ -166,11 +166,13 @@ class _Cut(InNumbers):
 
 SECTIONS, HOW_SECTIONS = "reported section forces are those that were found", "heads and texts read back, random values"
 Reported = Scalar | str
-Rows = Sequence[Mapping[str, Reported]]
+SectionRows = Sequence[Mapping[str, Reported]]
 
 
 def sections_reported(
-    found: Mapping[str, SectionForces], reported: Iterable[tuple[str, str, Rows, Rows]], values: Mapping[str, Any]
+    found: Mapping[str, SectionForces],
+    reported: Iterable[tuple[str, str, SectionRows, SectionRows]],
+    values: Mapping[str, Any],
 ) -> Iterator[Check]:
     """Checks of the reported section forces of each body, of every report of it.
 
@@ -185,7 +187,7 @@ def sections_reported(
     return tally.checks()
 
 
-def _wrong(forces: SectionForces, pieces: Rows, extremes: Rows, values: _Values) -> str:
+def _wrong(forces: SectionForces, pieces: SectionRows, extremes: SectionRows, values: _Values) -> str:
     if len(pieces) != len(forces.pieces) or len(extremes) != len(forces.extremes):
         return f"{len(pieces)} pieces and {len(extremes)} extremes are reported"
     for piece, row in zip(forces.pieces, pieces, strict=True):
@@ -279,9 +281,9 @@ WORKS_NAME = "reported virtual displacements and works are right"
 WORKS_HOW = "wrenches of every constraint, declared forces, equilibrium of the bodies"
 MIDDLE = "middle of "
 SaidWork = Scalar | str
-Shift = Sequence[SaidWork]
-Moved = tuple[
-    Shift | None, SaidWork, Shift, str
+_Shift = Sequence[SaidWork]
+_Moved = tuple[
+    _Shift | None, SaidWork, _Shift, str
 ]  # (centre, None at infinity; turn; shift; where a load acts, in words)
 
 
@@ -298,12 +300,12 @@ class ReportedWork:
     """
 
     name: str
-    blocks: Sequence[tuple[Sequence[str], SaidWork, Shift]]
+    blocks: Sequence[tuple[Sequence[str], SaidWork, _Shift]]
     along: SaidWork
     works: Sequence[tuple[str, SaidWork]]
     value: SaidWork
-    rows: Sequence[Moved]
-    places: Sequence[Moved]
+    rows: Sequence[_Moved]
+    places: Sequence[_Moved]
     printed: Sequence[tuple[str, SaidWork]]
     left: SaidWork
     last: SaidWork

@@ -30,7 +30,7 @@ from eomgen.proof.drawn import DrawnCurve, DrawnPanel, ReportedPush, said_of, sp
 from eomgen.proof.free_bodies import named_otherwise
 from eomgen.proof.masses import other_data
 from eomgen.proof.posed_model import apart, meetings_of
-from eomgen.proof.reported_cuts import ReportedWork, Rows, sections_reported, works_reported
+from eomgen.proof.reported_cuts import ReportedWork, SectionRows, sections_reported, works_reported
 from eomgen.symbolic.expression import Node, Scalar, Vector, parse, symbols_of
 from eomgen.symbolic.numeric import evaluate, fifty_digits, tolerances
 
@@ -48,7 +48,7 @@ def certify_structure(
     sections: Mapping[str, SectionForces],
     influence: InfluenceLine | None = None,
     *,
-    reported: Iterable[tuple[str, str, Rows, Rows]] = (),
+    reported: Iterable[tuple[str, str, SectionRows, SectionRows]] = (),
     works: Iterable[ReportedWork] = (),
 ) -> Certificate:
     """Check the two ways, every body's balance, section forces from the other end, influence lines by loads.

@@ -27,7 +27,7 @@ from eomgen.symbolic.print import to_text
 
 
 SIXTH = Fraction(1, 6)
-Displaced = tuple[str, Vector | None, Vector | None]
+_Displaced = tuple[str, Vector | None, Vector | None]
 """(where a load acts, displacement of that point, rotation of the body): of what it works on."""
 
 
@@ -162,7 +162,7 @@ class VelocityPlan:
             total = total + sum((f * v for f, v in pairs), start=0)
         return total
 
-    def displaced(self, load: PointForce | Couple | SpreadLoad) -> list[Displaced]:
+    def displaced(self, load: PointForce | Couple | SpreadLoad) -> list[_Displaced]:
         """Points on which a load works: of a uniform line load the middle, where its resultant acts, else both ends."""
         if isinstance(load, Couple):
             return [(load.body, None, self.spin(load.body))]
