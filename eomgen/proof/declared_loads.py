@@ -281,8 +281,21 @@ class Declared(InNumbers):
     def direction(self, v: Vector) -> Vector:
         return direction_at(v)
 
-    def function(self, name: str, x: Any) -> Any:
-        return fifty_digits().functions[name](x)
+    def function(self, name: str, *x: Any) -> Any:
+        return fifty_digits().functions[name](*x)
+
+    def rate_of(self, xs: tuple[Any, ...]) -> Vector:
+        return Vector(way_through(self.system, self.state).rates(self.scene.vector(xs)))
+
+    def in_stream(self, point: str, medium: tuple[Any, ...] | None) -> tuple[Vector, Vector]:
+        body, r = self.scene.place(point)
+        link, stream = self.motion.link(body or ""), self.scene.vector(medium)
+        own = link.twist.at(r)
+        return own.v + Vector(self.system.scope.time_derivative(r)) - link.pose.R.T @ stream, own.w
+
+    @property
+    def plane(self) -> bool:
+        return self.scene.plane
 
 
 # -------- rates of states -------------------------------------------------------------------------------------

@@ -27,7 +27,7 @@ from eomgen.mechanics.kinematics import JointEffort, SystemInertia
 from eomgen.model import FUNCTIONS, PointForce
 from eomgen.proof.at_a_state import NumericState
 from eomgen.proof.check import Check, checked, differing, unchecked
-from eomgen.proof.declared_loads import acting
+from eomgen.proof.declared_loads import Declared, acting
 from eomgen.proof.degrees_of_freedom import Nearby
 from eomgen.proof.free_bodies import drive_demanded, multipliers_demanded
 from eomgen.proof.impacts import struck
@@ -539,6 +539,9 @@ class NearbyStates:
         known = {**self._way.now, **dict(zip(names.values(), self.along(q)[1], strict=True))}
         stated = [force.kinetic for force in scope.model.forces.values() if force.kinetic is not None]
         given = [formula.evaluate({**scope.names, **names}) for formula in stated]
+        proof = Declared(self.state.equations.system, known)
+        others = (force.acts(proof) for force in scope.model.forces.values() if force.placeless and not force.kinetic)
+        given += [act.kinetic for acts in others for act in acts if act.kinetic is not None]
         return sum(evaluate(given, known, fifty_digits()), start=0 * SECOND_STEP)
 
     def worked(self, body: str | None = None) -> Any:

@@ -65,6 +65,19 @@ DIMENSIONS = {
 }
 
 
+def _square(size: int) -> list[list[str]]:
+    """A symmetric added mass."""
+    ways = 2 if size == 3 else 3
+    units = ("m", "m*d", "I")
+    return [
+        [
+            f"{units[(i >= ways) + (j >= ways)]}*{1 + i / 4 if i == j else round(0.3 / (1 + i + j), 3)}"
+            for j in range(size)
+        ]
+        for i in range(size)
+    ]
+
+
 RUBS = ("sliding", "sticking", "viscous")
 
 
@@ -771,6 +784,44 @@ class Drawing:
                 "flows": ["m*w/9*sin(w*t)", f"m*w/9*({name}_p_1 - {name}_p_2)*d^2/F0"],
                 "gas": 2,
                 "temperature": 3,
+            },
+            "drag": {
+                "kind": "drag",
+                "point": point,
+                "density": "m/d^3",
+                "area": "d^2/3",
+                "coefficient": 0.7,
+                **own.choice(
+                    ({}, {"medium": self.v("d*w", f"d*w*sin({q}{'/d' if unit else ''})", "d*w/3"), "smooth": "d*w"})
+                ),
+            },
+            "plate": {
+                "kind": "plate",
+                "point": point,
+                "density": "m/d^3",
+                "area": "d^2/3",
+                "lift": "1.5*sin(alpha) + 0.2*alpha",
+                "medium": self.v("3*d*w", "d*w*sin(w*t)", "d*w/3"),
+                **own.choice(({}, {"drag": "0.2 + alpha^2/9", "chord": self.v(3, 4, 0)})),
+                **({} if plane else {"normal": [0, 0, -2]}),
+            },
+            "buoyancy": {
+                "kind": "buoyancy",
+                "point": point,
+                "density": "m/d^3",
+                "volume": "d^3/4",
+                "acceleration": self.v(0, "-g", 0),
+                **own.choice(({}, {"medium": self.v("d*w*sin(w*t)", "d*w", "d*w^2*t")})),
+            },
+            "added_mass": {
+                "kind": "added_mass",
+                "point": point,
+                **own.choice(({}, {"medium": self.v("d*w*sin(w*t)", "d*w", "d*w^2*t")})),
+                **(
+                    {"diagonal": ["m/5", "m", "I/4"] if plane else ["m/5", "m", "m/2", "I/4", "I", "I/9"]}
+                    if own.random() < 0.5
+                    else {"matrix": _square(3 if plane else 6)}
+                ),
             },
             "rope": {
                 "kind": "rope",

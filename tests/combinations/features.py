@@ -47,7 +47,7 @@ FORCES = (
     "gravity", "force", "follower", "couple", "distributed", "spring", "spring_along", "spring_start", "spring_moved",
     "damper", "damper_along", "torsion_spring", "torsion_damper", "between", "potential", "kinetic", "generalized",
     "values", "mass_flow", "rain", "bumper", "hydraulic", "gas", "air",
-    "rope", "gear_mesh", "none",
+    "rope", "gear_mesh", "drag", "plate", "buoyancy", "added_mass", "none",
 )  # fmt: skip
 
 FACTORS: dict[str, tuple[str, ...]] = {
@@ -218,7 +218,7 @@ FORBIDDEN: tuple[Forbidden, ...] = (
         )
         for contact in ("sliding", "sticking", "viscous")
         for factor in ("force", "second_force")
-        for force in ("potential", "kinetic", "generalized")
+        for force in ("potential", "kinetic", "generalized", "added_mass")
     ),
     *_each(
         ("tie", "gap"),

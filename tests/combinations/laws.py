@@ -624,6 +624,48 @@ def _rope(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
     return _pair(name, now, f["path"], lambda r, v: max(0.0, k * (r - l0) + c * (v - paid)) if r > l0 else 0.0)
 
 
+def _stream(f: dict, now: Any) -> Jet:
+    return now.vector(f["medium"]) if "medium" in f else vector([0, 0, 0])
+
+
+def _at(name: str, f: dict, now: Any, force: np.ndarray) -> list[Load]:
+    """A force at the point of a body."""
+    body, place = _split(now, f["point"]), now.point(f["point"])
+    return [Load(name, body, _now(place), force, moving=place)] if body else []
+
+
+def _against(f: dict, now: Any) -> np.ndarray:
+    """Velocity of the point against the fluid."""
+    return _now(now.point(f["point"]).rate() - _stream(f, now))
+
+
+def _drag(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
+    w = _against(f, now)
+    rho, c, A, v = (now.model.number(f.get(x, 0)) for x in ("density", "coefficient", "area", "smooth"))
+    return _at(name, f, now, -rho * c * A / 2 * np.sqrt(w @ w + v * v) * w)
+
+
+def _plate(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
+    """Lift across the way in the plane of chord and normal, drag against it."""
+    R = _now(now.poses[_split(now, f["point"])][1])
+    e = R @ _unit(now, [*f.get("chord", [1, 0, 0]), 0][:3])
+    n = np.cross([0, 0, 1], e) if now.model.plane else R @ _unit(now, f.get("normal", [0, 0, 1]))
+    w = _against(f, now)
+    a, b = w @ e, w @ n
+    now.local["alpha"] = Jet(np.array([[np.arctan2(-b, a)], [0.0], [0.0]]))
+    try:
+        lift, drag = (_number(now.value(f.get(x, 0))) for x in ("lift", "drag"))
+    finally:
+        del now.local["alpha"]
+    q = now.model.number(f["density"]) * now.model.number(f["area"]) / 2 * np.hypot(a, b)
+    return _at(name, f, now, q * (lift * (a * n - b * e) - drag * (a * e + b * n)))
+
+
+def _buoyancy(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
+    rho, V = (now.model.number(f[x]) for x in ("density", "volume"))
+    return _at(name, f, now, rho * V * (_now(_stream(f, now).rate()) - _now(now.vector(f["acceleration"]))))
+
+
 def _gear_mesh(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
     """Teeth push beyond half the play, - M on the first and ratio M on the second; the driven one gets its share."""
     first, second = f["bodies"]
@@ -763,7 +805,8 @@ FORCES: dict[str, Callable] = {
     "damper": _damper, "between": _between, "torsion_spring": _torsion_spring, "torsion_damper": _torsion_damper,
     "potential": _potential, "generalized": _generalized, "kinetic": lambda *_: [], "mass_flow": _mass_flow,
     "bumper": _bumper, "rope": _rope, "gear_mesh": _gear_mesh, "hydraulic_cylinder": _cylinder,
-    "pneumatic_cylinder": _cylinder,
+    "pneumatic_cylinder": _cylinder, "drag": _drag, "plate": _plate, "buoyancy": _buoyancy,
+    "added_mass": lambda *_: [],
 }  # fmt: skip
 
 
@@ -832,22 +875,37 @@ def inertias(o: Any, now: Any, s: Any) -> list[tuple[np.ndarray, np.ndarray]]:
                 slope = x[1][2:]
                 found.append((own * np.outer(slope, slope), own * slope * float(2 * x[2][0])))
     for f in now.model.forces.values():
-        if f["kind"] == "kinetic":
-            M, bias = ARMATURE["kinetic"](o, now, s, f["energy"])
+        if f["kind"] in ("kinetic", "added_mass"):
+            M, bias = ARMATURE[f["kind"]](o, now, s, f)
             whole, part = np.zeros((n, n)), np.zeros(n)
             whole[first:, first:], part[first:] = M, bias
             found.append((whole, part))
     return found
 
 
-def _kinetic(o: Any, now: Any, s: Any, energy: str) -> tuple[np.ndarray, np.ndarray]:
+def _of_fluid(now: Any, f: dict) -> float:
+    """xi.A xi/2 of a body in a fluid, its own axes."""
+    body = _split(now, f["point"])
+    if body is None:
+        return 0.0
+    R = _now(now.poses[body][1])
+    xi = np.concatenate([R.T @ _against(f, now), R.T @ _now(now.spin(body))])
+    given = f.get("matrix") or f["diagonal"]
+    rows = np.diag([now.model.number(x) for x in given]) if "diagonal" in f else None
+    A = np.array([[now.model.number(x) for x in row] for row in given]) if rows is None else rows
+    xi = xi[[0, 1, 5]] if len(A) == 3 else xi
+    return float(xi @ A @ xi / 2)
+
+
+def _kinetic(o: Any, now: Any, s: Any, f: dict) -> tuple[np.ndarray, np.ndarray]:
     """d/dt dT/dq' - dT/dq of a T that is of second degree in the rates: differences in the rates are exact."""
     n = len(o.names)
     rates = np.eye(n)
 
     def T(q: np.ndarray, v: np.ndarray, t: float) -> float:
         known = {name: Jet(np.array([[a], [b], [0.0]])) for name, a, b in zip(o.names, q, v, strict=True)}
-        return _number(type(now)(now.model, Jet(np.array([[t], [1.0], [0.0]])), known).value(energy))
+        there = type(now)(now.model, Jet(np.array([[t], [1.0], [0.0]])), known)
+        return _number(there.value(f["energy"])) if f["kind"] == "kinetic" else _of_fluid(o.placed(there), f)
 
     def momentum(q: np.ndarray, t: float) -> np.ndarray:
         return np.array([(T(q, s.v + e, t) - T(q, s.v - e, t)) / 2 for e in rates])
@@ -862,7 +920,7 @@ def _kinetic(o: Any, now: Any, s: Any, energy: str) -> tuple[np.ndarray, np.ndar
     return M, along - slope
 
 
-ARMATURE: dict[str, Callable] = {"armature": lambda x: x, "kinetic": _kinetic}
+ARMATURE: dict[str, Callable] = {"armature": lambda x: x, "kinetic": _kinetic, "added_mass": _kinetic}
 
 
 def own_kinetic(o: Any, now: Any) -> float:
@@ -872,7 +930,9 @@ def own_kinetic(o: Any, now: Any) -> float:
         if "armature" in j:
             x = jet(now.value(j["angle"] if j["kind"] in ("revolute", "screw") else j["displacement"])).c
             total += now.model.number(j["armature"]) * float(x[1][0]) ** 2 / 2
-    return total + sum(_number(now.value(f["energy"])) for f in now.model.forces.values() if f["kind"] == "kinetic")
+    forces = now.model.forces.values()
+    total += sum(_number(now.value(f["energy"])) for f in forces if f["kind"] == "kinetic")
+    return total + sum(_of_fluid(now, f) for f in forces if f["kind"] == "added_mass")
 
 
 def potential(o: Any, now: Any) -> float | None:
@@ -895,7 +955,10 @@ def potential(o: Any, now: Any) -> float | None:
             V += _number(now.value(f["stiffness"])) * angle**2 / 2
         elif kind == "potential":
             V += _number(now.value(f["energy"]))
-        elif kind not in ("damper", "torsion_damper", "kinetic", "mass_flow"):
+        elif kind == "buoyancy":
+            push = _now(_stream(f, now).rate()) - _now(now.vector(f["acceleration"]))
+            V -= now.model.number(f["density"]) * now.model.number(f["volume"]) * push @ _now(now.point(f["point"]))
+        elif kind not in ("damper", "torsion_damper", "kinetic", "mass_flow", "drag", "plate", "added_mass"):
             return None
     for body in now.model.bodies.values():
         j = body.get("joint", {})

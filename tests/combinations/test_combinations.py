@@ -106,6 +106,8 @@ def of_law(table: str, law: str) -> compare.Product:
         return product(contact="sticking")
     if table == "FRICTION":
         return product(contact={"coulomb": "sliding", "viscous": "viscous"}[law])
+    if law == "added_mass":
+        return product(force=law, joint="planar")
     return product(joint_with=TOGETHER.get(law, law))
 
 
@@ -137,16 +139,19 @@ def planted(table: str, law: str) -> Callable:
     if table == "STICKING":
         return lambda *arguments: 0.1 * own(*arguments)
     by_table = {"JOINTS": joint, "CONSTRAINTS": constraint, "FORCES": force}
-    return by_table.get(table, kinetic if law == "kinetic" else lambda *arguments: 1.5 * own(*arguments))
+    return by_table.get(
+        table, kinetic if law in ("kinetic", "added_mass") else lambda *arguments: 1.5 * own(*arguments)
+    )
 
 
 STICKS = ("answers", "run")  # code and `reactions` have friction by the law of sliding
 LAWS = [
     *(("JOINTS", law) for law in laws.JOINTS),
     *(("CONSTRAINTS", law) for law in laws.CONSTRAINTS),
-    *(("FORCES", law) for law in laws.FORCES if law != "kinetic"),
+    *(("FORCES", law) for law in laws.FORCES if law not in ("kinetic", "added_mass")),
     *(("EFFORTS", law) for law in ("spring", "damper", "torque")),
     ("ARMATURE", "armature"),
+    ("ARMATURE", "added_mass"),
     *(("FRICTION", law) for law in laws.FRICTION),
     ("MOVING", "point"),
     ("STICKING", "least"),

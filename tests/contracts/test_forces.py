@@ -36,6 +36,8 @@ ONE = 'areas = 2, volumes = "l", retracted = "l/9"'
 BOTH = 'areas = [3, "k/9"], volumes = ["l", 1], retracted = 0.1, stroke = 9'
 WARM = 'gas = "g", temperature = 3'
 RATED = 'flow = "c", drop = "w"'
+INERTIAL = ("kinetic", "added_mass")
+SQUARE = [["m" if i == j else (i + j) / 20 for j in range(6)] for i in range(6)]
 EXAMPLES = {
     "gravity": {
         PLANE: [
@@ -177,6 +179,41 @@ EXAMPLES = {
         SPACE: [
             'point = "lower.P", velocity = [1, "k", "c*b\'"], rate = "tau"',
             'point = "leaking.origin", absolute = [1, 0, "k"], axes = "upper"',
+        ],
+    },
+    "drag": {
+        PLANE: [
+            'point = "lower.P", density = "k", area = 2, coefficient = "c"',
+            'point = "lower.M", density = "k", area = 2, coefficient = "c", medium = ["w*t", "z"], smooth = "l"',
+        ],
+        SPACE: ['point = "lower.M", density = "k", area = 2, coefficient = "c", medium = [1, "sin(t)", "l*a"]'],
+    },
+    "plate": {
+        PLANE: [
+            'point = "lower.P", density = "k", area = 2, lift = "w*sin(alpha)"',
+            'point = "lower.P", density = "k", area = 2, lift = "w*alpha", drag = "c + alpha^2", chord = [3, 4]',
+            'point = "upper.R", density = "k", area = 2, lift = "w*alpha + b", drag = "c", medium = ["w*t", 1]',
+        ],
+        SPACE: [
+            'point = "lower.P", density = "k", area = 2, lift = "w*sin(2*alpha)", drag = "c", medium = [1, "t", 0]',
+            'point = "upper.R", density = "k", area = 2, lift = 1, drag = "c", chord = [3, 4, 0], normal = [-4, 3, 0]',
+        ],
+    },
+    "buoyancy": {
+        PLANE: [
+            'point = "lower.P", density = "k", volume = "c", acceleration = [0, "-g"]',
+            'point = "lower.M", density = "k", volume = "c", acceleration = [0, "-g"], medium = ["l*sin(w*t)", "t^2"]',
+        ],
+        SPACE: ['point = "lower.P", density = "k", volume = "c", acceleration = [0, 1, "-g"], medium = [0, "t^3", 1]'],
+    },
+    "added_mass": {
+        PLANE: [
+            'point = "lower.P", diagonal = ["m", "3*m", "l"]',
+            'point = "lower.M", matrix = [["m", "l", 0], ["l", "5*m", 1], [0, 1, "k"]], medium = ["l*sin(w*t)", "t^2"]',
+        ],
+        SPACE: [
+            'point = "lower.P", diagonal = ["m", "3*m", 2, 1, "l", "k"], medium = [0, "t^3", 1]',
+            f'point = "lower.M", matrix = {SQUARE}',
         ],
     },
     "potential": {
@@ -324,7 +361,7 @@ def test_every_force_says_what_it_does_to_the_proof_too(kind, space, fields):
     assert not acting_otherwise(system, state) and not working_otherwise(equations, state)
     rates, due = at(system.scope.state_rates, state), declared_state_rates(system, state)
     assert rates == pytest.approx([float(x) for x in due.values()], rel=1e-13)
-    if kind != "kinetic":
+    if kind not in INERTIAL:
         others = replace(system.loads, applied=tuple(f for f in system.loads.applied if f.name != "F"))
         less = recursive.assembled_by_recursion(replace(system, loads=others))
         assert working_otherwise(less, state)
@@ -342,7 +379,7 @@ def test_a_force_acts(kind, space, fields):
     """Q is not 0 at a random state; of a kinetic energy M has entries of its own."""
     system = system_with(kind, space, fields)
     acts = system.loads.force_row(applied(system))
-    if kind == "kinetic":
+    if kind in INERTIAL:
         acts = tuple(value for _, _, value in SystemInertia(system.motion).added_mass)
     assert np.abs(at(acts, state_of(system))).max() > 1e-6
 

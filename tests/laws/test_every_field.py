@@ -235,6 +235,15 @@ acceleration = [0, -9.81]
         "retracted = 0.1\nstroke = 4\nexponent = 1.4\npressures = [1, 'k']\noutside = 'c'\nlength = 0.3",
         air="kind = 'pneumatic_cylinder'\npoints = ['two.Q', 'one.start']\nareas = 0.2\nvolumes = 1\nretracted = 0.1\n"
         "exponent = 1.4\npressures = 'k'\nflows = 'c*u'\ngas = 2\ntemperature = 'l'",
+        air_drag="kind = 'drag'\npoint = 'two.Q'\ndensity = 'm'\narea = 2\ncoefficient = 'c'\nmedium = ['u', 1]\n"
+        "smooth = 0.3",
+        wing="kind = 'plate'\npoint = 'two.Q'\ndensity = 'm'\narea = 2\nlift = '2*alpha'\ndrag = 'c + alpha^2'\n"
+        "chord = [3, 4]\nmedium = [-7, 'u']",
+        float="kind = 'buoyancy'\npoint = 'two.Q'\ndensity = 'm'\nvolume = 0.2\nacceleration = [0, -9]\n"
+        "medium = ['sin(t)', 0]",
+        hull="kind = 'added_mass'\npoint = 'two.Q'\nmatrix = [['m', 0.1, 0], [0.1, 'k', 0.2], [0, 0.2, 1]]\n"
+        "medium = ['sin(t)', 't']",
+        hull_1="kind = 'added_mass'\npoint = 'one.end'\ndiagonal = ['m', 'k', 0.2]",
         rain="kind = 'mass_flow'\npoint = 'two.end'\nabsolute = ['u', \"-a'\"]",
     ),
     "dry": ARMS_2

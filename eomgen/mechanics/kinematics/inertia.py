@@ -6,11 +6,12 @@ from collections.abc import Iterator, Sequence
 
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics.motion import BodyLink, Motion
-from eomgen.mechanics.kinematics.symbols import Scope
+from eomgen.mechanics.kinematics.scene import SystemScene
 from eomgen.model import MassProperties
 from eomgen.symbolic.expression import (
     Fraction,
     Matrix,
+    Node,
     Scalar,
     ScalarRow,
     Vector,
@@ -150,7 +151,7 @@ class SystemInertia:
         for link, k, armature in self.rotors:
             row = self.motion.joint_row(link.name, k)
             rows += [(i, j, armature * a * b) for i, a in row.items() for j, b in row.items()]
-        return [*rows, *_given_mass(self.motion.scope)]
+        return [*rows, *_given_mass(self.motion)]
 
     @property
     def added_bias(self) -> list[Scalar]:
@@ -161,28 +162,28 @@ class SystemInertia:
             bias = scope.time_derivative((link.s_rate[k],))[0]
             for i, factor in self.motion.joint_row(link.name, k).items():
                 c[i] = c[i] + armature * factor * bias
-        return [x + y for x, y in zip(c, _given_bias(scope), strict=True)]
+        return [x + y for x, y in zip(c, _given_bias(self.motion), strict=True)]
 
     # -- given energies ----------------------------------------------------------------------------
 
     @property
     def given_energy(self) -> Scalar:
         """T of the energies that are given, in the speeds [J]."""
-        w, T = self.motion.scope.given_kinetic
+        w, T = _given_kinetic(self.motion)
         return substituted((T,), dict(zip(w, self.motion.scope.rates, strict=True)))[0]
 
     @property
     def given_momenta(self) -> ScalarRow:
         """p = dT/dq' of the energies that are given, one for each coordinate."""
-        w, T = self.motion.scope.given_kinetic
+        w, T = _given_kinetic(self.motion)
         return substituted(gradient(T, w), dict(zip(w, self.motion.scope.rates, strict=True)))
 
     @property
     def given_inertia(self) -> ScalarRow:
         """Share of given energies in M a + c, along each speed."""
         scope = self.motion.scope
-        taken = list(_given_bias(scope))
-        for i, j, value in _given_mass(scope):
+        taken = list(_given_bias(self.motion))
+        for i, j, value in _given_mass(self.motion):
             taken[i] = taken[i] + value * scope.symbols.a[j]
         return tuple(taken)
 
@@ -238,8 +239,16 @@ def _by_twist(link: BodyLink, mass: MassProperties) -> BodyEnergy:
     return BodyEnergy(link.name, link.pose.R @ v, w, translation, HALF * (w @ (mass.I @ w)))
 
 
-def _given_mass(scope: Scope) -> list[tuple[int, int, Scalar]]:
-    w, T = scope.given_kinetic
+def _given_kinetic(motion: Motion) -> tuple[tuple[Node, ...], Scalar]:
+    """(w, T): the kinetic energies that the model gives, in names w of the rates of all coordinates."""
+    scope = motion.scope.over_rates
+    scenes = ((force, SystemScene(Motion(scope, motion.links), name)) for name, force in scope.model.forces.items())
+    given = (force.kinetic_energy(scene) for force, scene in scenes)
+    return scope.symbols.u, sum((T for T in given if T is not None), start=0)
+
+
+def _given_mass(motion: Motion) -> list[tuple[int, int, Scalar]]:
+    (w, T), scope = _given_kinetic(motion), motion.scope
     if is_zero(T):
         return []
     flat = [x for row in jacobian(gradient(T, w), w) for x in row]
@@ -251,8 +260,8 @@ def _given_mass(scope: Scope) -> list[tuple[int, int, Scalar]]:
     return [entry for entry in entries if not is_zero(entry[2])]
 
 
-def _given_bias(scope: Scope) -> ScalarRow:
-    w, T = scope.given_kinetic
+def _given_bias(motion: Motion) -> ScalarRow:
+    (w, T), scope = _given_kinetic(motion), motion.scope
     if is_zero(T):
         return (0,) * len(scope.symbols.u)
     bias = scope.time_derivative(scope.rates)

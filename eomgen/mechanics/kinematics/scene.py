@@ -167,6 +167,10 @@ class SystemScene:
             )
         return angle
 
+    def spin(self, body: str) -> Vector:
+        """Angular velocity of the body, in its axes, by the rates of its axes [rad/s]."""
+        return self.motion.spin(self.motion.link(body))
+
     def angle_rate(self, body: str) -> Scalar:
         return self.motion.scope.time_derivative((self.angle(body),))[0]
 

@@ -154,13 +154,13 @@ class Scope:
         return {self.symbols.t: 1, **dict(zip(self.symbols.q, self.rates, strict=True)), **further, **derivatives}
 
     @property
-    def given_kinetic(self) -> tuple[tuple[Node, ...], Scalar]:
-        """(w, T): the kinetic energies that the model gives, in names w of the rates of all coordinates."""
+    def over_rates(self) -> Scope:
+        """The scope whose speeds are names w of the rates of all coordinates, driven ones too."""
         w = tuple(self.graph.symbol(f"({q.name}')") for q in self.symbols.q)  # no name of a model has parentheses
         names = self.names | {f"{q.name}'": x for q, x in zip(self.symbols.q, w, strict=True)}
+        N = tuple(tuple(int(i == k) for k in range(len(w))) for i in range(len(w)))
         names |= _speeds_by_rates(self.model, names)
-        given = [force.kinetic for force in self.model.forces.values() if force.kinetic is not None]
-        return w, sum((energy.evaluate(names) for energy in given), start=0)
+        return replace(self, symbols=replace(self.symbols, u=w), N=N, nu=(0,) * len(w), names=names)
 
     @cached_property
     def composites(self) -> dict[str, Composite]:

@@ -10,6 +10,7 @@ from eomgen.model.forces.cylinders import HydraulicCylinder, PneumaticCylinder
 from eomgen.model.forces.dry import Belt, Brake, Clutch
 from eomgen.model.forces.elements import Between, Damper, Spring
 from eomgen.model.forces.energies import Kinetic, Potential
+from eomgen.model.forces.fluid import AddedMass, Buoyancy, Drag, Plate
 from eomgen.model.forces.gear_mesh import GearMesh
 from eomgen.model.forces.mass_flow import MassFlow
 from eomgen.model.forces.rope import Rope
@@ -35,6 +36,10 @@ ALL = (
     Brake,
     Belt,
     MassFlow,
+    Drag,
+    Plate,
+    Buoyancy,
+    AddedMass,
     Potential,
     Kinetic,
     Generalized,
@@ -42,14 +47,17 @@ ALL = (
 
 __all__ = [
     "ALL",
+    "AddedMass",
     "Belt",
     "Between",
     "Brake",
     "Bumper",
+    "Buoyancy",
     "Clutch",
     "CoupleForce",
     "Damper",
     "Distributed",
+    "Drag",
     "Force",
     "GearMesh",
     "Generalized",
@@ -57,6 +65,7 @@ __all__ = [
     "HydraulicCylinder",
     "Kinetic",
     "MassFlow",
+    "Plate",
     "PneumaticCylinder",
     "PointForce",
     "Potential",

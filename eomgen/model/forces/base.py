@@ -125,8 +125,18 @@ class ForceTrial(Protocol):
             NoValue: it has none.
         """
 
-    def function(self, name: str, x: Any) -> Any:
-        """A function of a number: sqrt, tanh ..."""
+    def function(self, name: str, *x: Any) -> Any:
+        """A function of numbers: sqrt, tanh, atan2 ..."""
+
+    def rate_of(self, xs: tuple[Any, ...]) -> Vector:
+        """d/dt of a declared vector of time, ground axes."""
+
+    def in_stream(self, point: str, medium: tuple[Any, ...] | None) -> tuple[Vector, Vector]:
+        """(velocity of a point less that of a medium, spin of its body) by the twist, its axes, over the motion."""
+
+    @property
+    def plane(self) -> bool:
+        """True of a model in the plane."""
 
 
 # -------- element ---------------------------------------------------------------------------------------------
@@ -351,6 +361,10 @@ class Force(Part):
     def kinetic(self) -> Expression | None:
         """T [J] of what moves and is no body; None of a force that has none."""
         return None
+
+    def kinetic_energy(self, scene: LoadContext) -> Scalar | None:
+        """T [J] of what moves and is no body, over the motion; None of a force that has none."""
+        return None if self.kinetic is None else scene.value(self.kinetic)
 
     def strands_at(self, scene: LoadContext) -> tuple[Any, ...]:
         """The straight pieces of what pulls along its way; () of others."""

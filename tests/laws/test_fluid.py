@@ -1,0 +1,176 @@
+"""Bodies in a fluid: against terminal velocities, glides, released spheres, Kirchhoff's and Munk's closed forms."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import eomgen
+from eomgen.errors import EomgenError, ModelError
+
+pytestmark = pytest.mark.slow
+
+PARTICLE = """
+eomgen = 1
+space = "plane"
+parameters = { m = 0.8, rho = 1.2, A = 0.3, c = 0.9, g = 9.81 }
+coordinates = { x = 0, y = 0 }
+bodies.b = { shape = { kind = "particle", mass = "m" }, joint = { kind = "placed", at = ["x", "y"] } }
+forces.weight = { kind = "gravity", acceleration = [0, "-g"] }
+"""
+FREE = """
+eomgen = 1
+space = "plane"
+parameters = { m = 4, J = 0.5, a = 0.7, d = 5, j = 0.2 }
+coordinates = { x = { speed = 2 }, y = 0, th = 0.3 }
+bodies.b = { mass = "m", inertia = "J", joint = { kind = "free", x = "x", y = "y", angle = "th" } }
+forces.water = { kind = "added_mass", point = "b.origin", diagonal = ["a", "d", "j"] }
+"""
+
+
+def end_of(text: str, time: float, *names: str) -> list[float]:
+    run = eomgen.simulate(eomgen.loads(text), time=time, target="numpy", rtol=1e-11, atol=1e-11)
+    assert run.ok
+    return [float(run[name][-1]) for name in names]
+
+
+def begun(text: str) -> dict[str, float]:
+    """{name of a speed: its rate at the start}"""
+    rhs = eomgen.derive(eomgen.loads(text)).rhs("numpy")
+    dx = rhs(0.0, rhs.x0, rhs.p0)
+    return dict(zip(rhs.speeds, dx[len(rhs.coordinates) :], strict=False))
+
+
+def test_a_falling_body_comes_to_its_terminal_velocity():
+    """v = v_t tanh(g t/v_t), v_t^2 = 2 m g/(rho c A)."""
+    air = 'forces.air = { kind = "drag", point = "b.center", density = "rho", area = "A", coefficient = "c" }'
+    v_t = math.sqrt(2 * 0.8 * 9.81 / (1.2 * 0.9 * 0.3))
+    assert end_of(PARTICLE + air, 0.9, "y'")[0] == pytest.approx(-v_t * math.tanh(9.81 * 0.9 / v_t), rel=1e-9)
+
+
+def test_a_body_drifts_with_the_wind_that_carries_it():
+    """w' = - k w^2 of the velocity against the wind: w = w_0/(1 + k w_0 t)."""
+    air = 'forces.air = { kind = "drag", point = "b.center", density = "rho", area = "A", coefficient = "c", '
+    text = PARTICLE.replace("g = 9.81", "g = 0") + air + "medium = [6, 0] }"
+    k = 1.2 * 0.9 * 0.3 / (2 * 0.8)
+    assert end_of(text, 2, "x'")[0] == pytest.approx(6 - 6 / (1 + k * 6 * 2), rel=1e-9)
+
+
+@pytest.mark.parametrize("more", ["", ', chord = [3, 0], drag = "0.2*cos(0*alpha)"'])
+def test_a_glide_goes_down_by_drag_over_lift(more):
+    """tan gamma = c_D/c_L, u^2 = 2 m g/(rho A sqrt(c_L^2 + c_D^2)): steady from the start."""
+    drag = more or ', drag = "0.2"'
+    u = math.sqrt(2 * 0.8 * 9.81 / (1.2 * 0.3 * math.hypot(1.1, 0.2)))
+    gamma = math.atan2(0.2, 1.1)
+    wing = f'forces.wing = {{ kind = "plate", point = "b.center", density = "rho", area = "A", lift = "1.1"{drag} }}'
+    start = f"x = {{ speed = {u * math.cos(gamma)!r} }}, y = {{ speed = {-u * math.sin(gamma)!r} }}"
+    assert list(begun((PARTICLE + wing).replace("x = 0, y = 0", start)).values()) == pytest.approx([0, 0], abs=1e-12)
+
+
+@pytest.mark.parametrize("space", ["plane", "space"])
+def test_the_angle_of_attack_is_that_of_the_chord_against_the_way(space):
+    """A plate that is turned up by 0.2 and moves along x has alpha = 0.2: F = rho/2 A u^2 c_L(0.2) upwards."""
+    text = PARTICLE.replace("g = 9.81", "g = 0").replace("x = 0, y = 0", "x = { speed = 5 }, y = 0")
+    text = text.replace('{ shape = { kind = "particle", mass = "m" }', '{ mass = "m", inertia = 1')
+    text = text.replace('"placed", at = ["x", "y"]', '"placed", at = ["x", "y"], angle = 0.2')
+    if space == "space":
+        text = (
+            text.replace('"plane"', '"space"')
+            .replace('[0, "-g"]', '[0, "-g", 0]')
+            .replace("inertia = 1", "inertia = [1, 1, 1]")
+        )
+        text = text.replace('at = ["x", "y"]', 'at = ["x", "y", 0], axis = [0, 0, 1]')
+    wing = 'forces.wing = { kind = "plate", point = "b.center", density = "rho", area = "A", lift = "3*alpha + alpha^2"'
+    wing += ", normal = [0, 2, 0] }" if space == "space" else " }"
+    x, y = begun(text + wing).values()
+    assert y == pytest.approx(0.6 * 0.3 * 25 * (0.6 + 0.04) / 0.8, rel=1e-12) and x == pytest.approx(0, abs=1e-12)
+
+
+def test_a_light_sphere_rises_by_its_own_and_half_the_mass_of_water():
+    """a = (rho V - m) g/(m + rho V/2)."""
+    water = """
+    forces.lift = { kind = "buoyancy", point = "b.center", density = 1000, volume = 2e-3, acceleration = [0, "-g"] }
+    forces.water = { kind = "added_mass", point = "b.center", diagonal = [1, 1, 0] }
+    """
+    assert begun(PARTICLE + water)["y'"] == pytest.approx((2 - 0.8) * 9.81 / (0.8 + 1), rel=1e-12)
+
+
+def test_a_sphere_of_the_density_of_water_moves_with_it():
+    """(m + m_a) a = (m_a + rho V) U': with m = rho V it follows any unsteady stream."""
+    G = 'acceleration = [0, "-g"]'
+    stream = 'medium = ["3*sin(2*t)", "t^2"]'
+    water = f"""
+    forces.lift = {{ kind = "buoyancy", point = "b.center", density = 1000, volume = 8e-4, {stream}, {G} }}
+    forces.water = {{ kind = "added_mass", point = "b.center", diagonal = [0.4, 0.4, 0], {stream} }}
+    """
+    vx, y = end_of(PARTICLE + water, 1.3, "x'", "y")
+    assert vx == pytest.approx(3 * math.sin(2.6), rel=1e-9) and y == pytest.approx(1.3**3 / 3, rel=1e-9)
+
+
+def test_a_hull_is_turned_across_its_way():
+    """Munk: (J + j) theta'' = (m_x - m_y) u v in its axes, u = U cos(theta), v = - U sin(theta); none at 0."""
+    due = (0.7 - 5) * (2 * math.cos(0.3)) * (-2 * math.sin(0.3)) / 0.7
+    assert begun(FREE)["th'"] == pytest.approx(due, rel=1e-12)
+    assert begun(FREE.replace("th = 0.3", "th = 0"))["th'"] == 0
+
+
+def test_impulse_and_energy_of_a_body_in_an_ideal_fluid_are_kept():
+    """Kirchhoff: the impulse in ground axes, R ((m + m_x) u, (m + m_y) v), and T stay constant."""
+    run = eomgen.simulate(eomgen.loads(FREE), time=4, target="numpy", rtol=1e-11, atol=1e-11)
+    th, vx, vy = run["th"], run["x'"], run["y'"]
+    u, v = np.cos(th) * vx + np.sin(th) * vy, np.cos(th) * vy - np.sin(th) * vx
+    P = np.cos(th) * 4.7 * u - np.sin(th) * 9 * v
+    assert run.ok and np.ptp(run.energy) < 1e-8 and np.ptp(P) < 1e-8 and np.ptp(th) > 0.5
+
+
+def test_an_ellipsoid_in_space_keeps_turning_about_its_axis():
+    """Kirchhoff in space, 6 rows: along x, an axis of the matrix, there is no moment; askew the one of Munk about z."""
+    text = """
+    eomgen = 1
+    space = "space"
+    coordinates = { x = { speed = 2 }, y = 0, z = 0, a = { start = ANGLE }, b = 0, d = { speed = 0 } }
+    [bodies.b]
+    mass = 4
+    inertia = [1, 2, 3]
+    joint = { kind = "free", position = ["x", "y", "z"], orientation = "zyx", angles = ["a", "b", "d"] }
+    [forces.water]
+    kind = "added_mass"
+    point = "b.center"
+    matrix = ROWS
+    """
+    rows = np.diag([1, 5, 5, 1, 2, 2.0])
+    rows[1, 5] = rows[5, 1] = 0.5
+    text = text.replace("ROWS", str(rows.tolist()))
+    assert begun(text.replace("ANGLE", "0"))["a'"] == pytest.approx(0, abs=1e-12)
+    u, v = 2 * math.cos(0.3), -2 * math.sin(0.3)
+    M, due = np.array([[9, 0.5], [0.5, 5]]), np.array([0, (1 - 5) * u * v])
+    assert begun(text.replace("ANGLE", "0.3"))["a'"] == pytest.approx(np.linalg.solve(M, due)[1], rel=1e-10)
+
+
+BAD = [
+    ('diagonal = ["a", "d", "j"]', 'diagonal = ["a", "d"]', "3 or 6 entries"),
+    ('diagonal = ["a", "d", "j"]', "matrix = [[1, 2, 0], [3, 1, 0], [0, 0, 1]]", "not symmetric"),
+    ('diagonal = ["a", "d", "j"]', "diagonal = [1, 2, 3, 4, 5, 6]", "in plane it has 3"),
+    ('diagonal = ["a", "d", "j"]', "diagonal = [-1, 2, 3]", "negative"),
+    ('diagonal = ["a", "d", "j"]', 'diagonal = [{ value = 1, unit = "kg*m" }, 2, 3]', "kg"),
+    ("b.origin", "O", "no point of a body"),
+]
+
+
+@pytest.mark.parametrize(("old", "new", "message"), BAD)
+def test_what_cannot_be_an_added_mass_is_refused_by_name(old, new, message):
+    """What, where, and how to mend it."""
+    text = FREE.replace(old, new) + "points.O = [0, 0]\n"
+    with pytest.raises(ModelError, match=message):
+        eomgen.loads(text)
+
+
+def test_reactions_beside_an_added_mass_are_refused_by_name():
+    """Its inertia forces have no place: what a hinge bears is not known."""
+    text = FREE.replace('kind = "free", x = "x", y = "y", angle = "th"', 'kind = "revolute", angle = "th"')
+    text = text.replace("x = { speed = 2 }, y = 0, ", "") + "outputs.A = 'reaction_x(b)'\n"
+    with pytest.raises(EomgenError, match="water"):
+        answer = eomgen.solve(eomgen.loads(text))["A"]
+        raise EomgenError(answer.message or "")
