@@ -42,6 +42,7 @@ from eomgen.model.fields import (  # noqa: E402
     VectorRule,
 )
 from eomgen.model.forces.cylinders import Valve  # noqa: E402
+from eomgen.model.forces.fluid import AddedMassRule  # noqa: E402
 from eomgen.model.joints.base import Turned  # noqa: E402
 from eomgen.model.joints.path import PathPiece  # noqa: E402
 from eomgen.model.kinds import (  # noqa: E402
@@ -181,8 +182,15 @@ def _(rule: AxialRule) -> str:
 
 @value_of.register
 def _(rule: ListRule) -> str:
+    if rule.single and rule.most is not None:
+        return f"one, or up to {rule.most} of: {value_of(rule.item)}"
     count = "list" if rule.most is None else str(rule.most)
     return f"{'one or a ' if rule.single else ''}{count} of: {value_of(rule.item)}"
+
+
+@value_of.register
+def _(rule: AddedMassRule) -> str:
+    return f"{'3 or 6' if rule.diagonal else 'the rows of a square of 3 or 6'} of: {value_of(FormulaRule())}"
 
 
 @value_of.register
