@@ -132,10 +132,10 @@ class DerivationError(EomgenError):
 
 
 class OpenConstraints(DerivationError):
-    """Constraints that no place near the start closes.
+    """Constraints that no configuration near the start satisfies.
 
     Args:
-        nearest: how near they come to closing, in words; found by a search, which runs when it is first read.
+        nearest: the smallest distance from being satisfied that a search finds, in words; it runs when first read.
     """
 
     def __init__(self, what: str, where: str = "", fix: str = "", nearest: Callable[[], str] = str) -> None:
@@ -146,7 +146,7 @@ class OpenConstraints(DerivationError):
 
     @property
     def what(self) -> str:
-        """The description of what is wrong, and how near the constraints come to closing."""
+        """The description of what is wrong, and how near the constraints come to being satisfied."""
         self._said, self._nearest = self._said + self._nearest(), str
         return self._said
 

@@ -61,7 +61,7 @@ class _Clock:
     lock: threading.Lock = field(default_factory=threading.Lock)
 
     def end_now(self) -> None:
-        """Ends the time."""
+        """Make the next check find the time limit passed."""
         self.end = -math.inf
 
     def error(self) -> OutOfPatience:
@@ -77,10 +77,10 @@ _CLOCK: ContextVar[_Clock | None] = ContextVar("patience", default=None)
 
 
 def check_patience() -> None:
-    """Does nothing while there is time left.
+    """Raise an error if the time limit has passed; slow loops call this in each turn.
 
     Raises:
-        PatienceEnded: there is none left.
+        PatienceEnded: it has.
     """
     clock = _CLOCK.get()
     if clock is not None and time.monotonic() > clock.end:
@@ -261,7 +261,7 @@ def seldom() -> Iterator[None]:
 
 
 def pieces_of(count: int, parts: int) -> list[tuple[int, int]]:
-    """(first, the one after the last) of so many parts, of one length as nearly as can be."""
+    """(first, last + 1) of each of the parts into which `count` indices are divided, whose lengths differ by 1 at most."""
     parts = max(1, parts)
     return list(pairwise(count * k // parts for k in range(parts + 1)))
 

@@ -52,7 +52,10 @@ def places(n: int) -> Places:
 
 
 def solve(M: Reals, J: Reals, f: Work, g: Work) -> None:
-    """f, g become a, lam of M a - J^T lam = f, J a = g (upper triangle of M), or nan."""
+    """Solve M a - J^T lam = f, J a = g in place: a stands in f then, lam in g; nan where there is no solution.
+
+    Of the symmetric M the upper triangle is read.
+    """
     L = room(N * N)
     weight = room(K)
     mobility = room(N)
@@ -384,7 +387,7 @@ def struck(S: Work, c: Int, rest: Places, n: Int, column: Work) -> None:
 
 
 def multipliers(w: Int, S: Reals, order: Places, rank: Int, r: Work) -> None:
-    """r becomes lam of S lam = r by the factors, 0 of the rows that were passed over."""
+    """Solve S lam = r in place by the factors of S; lam is 0 in redundant rows, which the factors leave out."""
     y = room(K)
     sure = order[K]
     for m in range(K):

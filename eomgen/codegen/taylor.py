@@ -174,7 +174,7 @@ class _Writer:
         return (x.op, x.args[0]) if type(x) is Node and x.op in _PAIRS else x
 
     def moves(self, x: Scalar) -> bool:
-        """True if more than the first coefficient may not be zero."""
+        """True if the scalar may change with time: a coefficient after the first may differ from zero."""
         key = self.key(x)
         return key in self.named or (type(key) is Node and key.op == "neg" and self.moves(key.args[0]))
 

@@ -534,7 +534,8 @@ def _resultants(run: Trajectory, title: str, units: Mapping[str, Unit]) -> Pictu
     curves = {owner: size for owner, size in resultants(run).items() if not np.isnan(size).all()}
     if not curves:
         raise RunFailed(
-            "no joint and no constraint of the run carries a force of several components", fix="draw the outputs"
+            "no joint and no constraint of the run carries a force of several components",
+            fix="draw another view: time, outputs or phase",
         )
 
     def fill(figure: Any) -> None:

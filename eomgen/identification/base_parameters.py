@@ -379,7 +379,7 @@ def _vanishes(W: np.ndarray, by: Sequence[Any]) -> bool:
 
 
 def number_text(x: Any) -> str:
-    """A factor that no formula is known of."""
+    """A number as text: a fraction with small numerator and denominator where it surely is one, else ten digits."""
     near = _plain(x)
     return f"{float(x):.10g}" if near is None else str(near)
 

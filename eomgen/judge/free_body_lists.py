@@ -293,7 +293,7 @@ class _Group:
         return along * sense > 0 or (along > 0 and listed.name == own.name)
 
     def adds(self, direction: np.ndarray) -> bool:
-        """True if what was taken before does not carry the direction already."""
+        """True if the direction is linearly independent of those of the forces that were matched before."""
         before = np.array([way for _, way in self.taken]).reshape(-1, 3)
         return _rank(np.vstack([before, direction])) > _rank(before)
 

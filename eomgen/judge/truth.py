@@ -659,7 +659,7 @@ class InSmallMotions:
     near: Comparison
 
     def explained(self, number: int) -> list[Explanation]:
-        """The explanation that the equation is linearized, with one further mistake less than allowed."""
+        """Explanations by `number` mistakes, of which linearization is one: alone, or with number - 1 others."""
         rows = tuple(x - y for x, y in zip(self.near.rows, self.whole.rows, strict=True))
         text = "sines, cosines and products of speeds are those of a small motion: the equation is linearized"
         share = Share(Mistake(NAME, "approximation", rows, RANK, open=False, text=text), Fraction(1))

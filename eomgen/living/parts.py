@@ -166,7 +166,10 @@ def _dicts(problems: tuple[Problem, ...]) -> list[dict[str, Any]]:
 
 
 def value_class(value: Expression | None) -> Hashable:
-    """Part of a value on which formulas may depend: its sign; of a formula of other parameters all of it."""
+    """Property of a value on which the printed equations may depend: the sign of a number, or the whole formula.
+
+    Parts of the page are made anew only where this changes.
+    """
     if value is None or value.names - {"pi"}:
         return value
     number = value.value_at({}) or 0

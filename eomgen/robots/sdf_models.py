@@ -196,7 +196,9 @@ def _is_old(root: XmlElement) -> bool:
 def _flatten(found: FlatModel, model: XmlElement, scope: ModelScope) -> None:
     """Moves the elements of nested models into the whole, under their names there."""
     if scope.prefix.count("::") > DEEPEST:
-        raise ModelError(f"more than {DEEPEST} models stand one in the other", model.where, "make it flatter")
+        raise ModelError(
+            f"more than {DEEPEST} models stand one inside the other", model.where, "put their links into one <model>"
+        )
     for within, own, merged in list(_within(model, scope)):
         title = within.get("name") or "model"
         frame = scope.named(f"_merged__{title}__model__" if merged else title)

@@ -196,7 +196,10 @@ def _spins(link: BodyLink, mass: MassProperties) -> bool:
 
 
 def shaft_of(system: System, link: BodyLink) -> Vector | None:
-    """The way from its bearing along a body on the ground that turns and has no lengths; of a second the other way."""
+    """Direction in which a rotor without dimensions is drawn as a shaft from its bearing on the ground, body axes.
+
+    None of a body that is no such rotor. Of two rotors at one bearing the second is drawn in the opposite direction.
+    """
     part = system.scope.model.bodies[link.name]
     if link.parent != GROUND or not _turns(link) or part.shape is not None or part.parts is not None:
         return None

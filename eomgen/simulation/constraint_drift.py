@@ -375,7 +375,7 @@ class ConstraintRank:
     dependent: tuple[tuple[tuple[str, ...], str], ...] = ()
 
     def at(self, p: np.ndarray) -> ConstraintRank:
-        """The same at other values of the parameters."""
+        """The same constraints with other values of the parameters."""
         return replace(self, rows=measured_at(self.rows, p))
 
     def __call__(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:

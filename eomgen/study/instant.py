@@ -228,7 +228,7 @@ class CentrodeCurves:
 
     @staticmethod
     def of(system: System, centrodes: Centrodes, values: State) -> CentrodeCurves:
-        """Both curves, followed to either side of an instant.
+        """The fixed and the moving centrode, computed for some time before and after an instant.
 
         Args:
             values: numbers of t, the coordinates, speeds and parameters then.

@@ -135,7 +135,7 @@ def spread_of(model: Model, text: str, *, declared: bool = True) -> tuple[DrawnV
 def _refuse_no_law(text: str, law: Distribution, numbers: Sequence[float]) -> None:
     by_name = dict(zip(law.arguments, numbers, strict=True))
     if not all(map(math.isfinite, numbers)):
-        raise UsageError(f"'{text}': its arguments are no numbers", fix=LIKE)
+        raise UsageError(f"'{text}': its arguments are no finite numbers", fix=LIKE)
     for what in law.positive:
         if by_name[what] <= 0:
             raise UsageError(f"'{text}': its {what} is not above 0", fix=LIKE)

@@ -120,7 +120,10 @@ class Motion:
 
     @cached_property
     def decided(self) -> dict[Node, None]:
-        """Scalars whose values at the start decided the form of loads and constraints (`value_at_start`)."""
+        """Scalars by whose values at the start loads and constraints chose between two formulas (`value_at_start`).
+
+        Keys of a table; they are added while the loads and constraints are derived.
+        """
         return {}
 
     @cached_property

@@ -128,12 +128,17 @@ class Path(Joint):
         for k, piece in enumerate(self.pieces or ()):
             where = (*path, "pieces", k)
             if (piece.line is None) == (piece.arc is None):
-                yield Diagnostic(where, f"a piece of the path of body '{name}' needs one of 'line' and 'arc'")
+                yield Diagnostic(
+                    where,
+                    f"a piece of the path of body '{name}' needs one of 'line' and 'arc'",
+                    "line = 2, or arc = 0.5, turn, angle",
+                )
             elif piece.arc is not None and (piece.turn is None or piece.angle is None):
                 what = f"an arc of the path of body '{name}' needs 'turn' and 'angle'"
                 yield Diagnostic(where, what, 'turn = "ccw", angle = "pi/2"')
             elif piece.line is not None and (piece.turn is not None or piece.angle is not None):
-                yield Diagnostic(where, f"a line of the path of body '{name}' has no 'turn' and no 'angle'")
+                what = f"a line of the path of body '{name}' has no 'turn' and no 'angle'"
+                yield Diagnostic(where, what, "leave them out; the next piece begins in the direction of the line")
 
     def turns(self) -> tuple[Expression, ...]:
         return ()

@@ -164,14 +164,17 @@ class Expansion:
         return self.sign_of_constant(self.atoms.node(f))
 
     def _is_never_negative(self, f: Terms) -> bool:
-        """True if the sum is never negative: no monomial is, and its number outweighs its waves, 1 + cos(2 x) >= 0."""
+        """True if the sum is never negative: of each product of symbols, which is not, the constant factor is at least
+        as large as the amplitudes of its sines and cosines together, as in 1 + cos(2 x) >= 0.
+        """
         least = self._least(f)
         return least is not None and all(number >= 0 for number in least.values())
 
     def is_positive(self, f: Terms) -> bool:
-        """True if the sum is positive: never negative, and some product of positive symbols exceeds its waves.
+        """True if the sum is positive: never negative, and one part of it is always above 0.
 
-        M + m sin(alpha)^2 > 0
+        That part is a product of positive symbols whose constant factor is larger than the amplitudes of its sines and
+        cosines together: M + m sin(alpha)^2 > 0 for positive M.
         """
         least = self._least(f)
         if least is None or not all(number >= 0 for number in least.values()):

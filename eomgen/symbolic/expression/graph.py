@@ -369,7 +369,7 @@ class Graph:
         if type(base) is not Node:
             return exact_power(exact(base), exponent.numerator)
         if exponent > LARGEST_POWER:
-            raise DerivationError(f"the power {exponent} is too large")
+            raise DerivationError(f"the power {exponent} is too large", fix=f"exponents go up to {LARGEST_POWER}")
         if base.op == "neg":
             power = self.pow(base.args[0], exponent)
             return self.neg(power) if exponent % 2 else power
