@@ -269,7 +269,7 @@ class Equations(Result):
 
     @property
     def requested_outputs(self) -> RequestedOutputs:
-        """The outputs of the model that are functions of the state, in q, u and a; of the others the reason why they are not."""
+        """The outputs of the model that are functions of the state, in q, u and a; for each other one the reason."""
         return self.study.requested_outputs
 
     @property

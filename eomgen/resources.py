@@ -261,7 +261,7 @@ def seldom() -> Iterator[None]:
 
 
 def pieces_of(count: int, parts: int) -> list[tuple[int, int]]:
-    """(first, last + 1) of each of the parts into which `count` indices are divided, whose lengths differ by 1 at most."""
+    """(first, last + 1) of each part of `count` indices, which are divided evenly: lengths differ by 1 at most."""
     parts = max(1, parts)
     return list(pairwise(count * k // parts for k in range(parts + 1)))
 
