@@ -459,7 +459,7 @@ def live_command(model: str, port: int, no_browser: bool, edit: bool, patience: 
     return 0
 
 
-@VERB("lsp")
+@click.command("lsp", cls=Lasting)
 def lsp_command() -> int:
     """Answer an editor about model files, on stdin and stdout.
 

@@ -22,6 +22,7 @@ from slow_run import sampled, usual
 
 from eomgen import files
 from eomgen.cli import main
+from eomgen.cli_common import Lasting
 from eomgen.errors import WriteFailed, visible
 
 pytestmark = [pytest.mark.slow, needs_fork]
@@ -56,14 +57,18 @@ MEASURED = "t,theta,theta',theta''\n" + "".join(f"{k},{k % 3},{k % 2},{k % 5}\n"
 
 
 def ways() -> list[tuple[str, str]]:
-    """(verb, option) of every option under which a verb of the command line writes; "" where it needs none."""
+    """(verb, option) of every option under which a verb of the command line writes; "" where it needs none.
+
+    What lasts until somebody ends it writes nothing of its own: `live` and `lsp` answer who asks.
+    """
     found = [
         (verb, max(parameter.opts, key=len))
         for verb, command in main.commands.items()
         for parameter in command.params
         if isinstance(parameter.type, click.Path) and not parameter.type.exists
     ]
-    return found + [(verb, "") for verb in main.commands if verb not in dict(found)]
+    ends = [verb for verb, command in main.commands.items() if not isinstance(command, Lasting)]
+    return found + [(verb, "") for verb in ends if verb not in dict(found)]
 
 
 def words_of(verb: str, option: str, path: Path, given: dict[str, str]) -> list[str]:
