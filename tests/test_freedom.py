@@ -183,8 +183,9 @@ def test_a_tie_that_closes_in_some_rows_and_reacts_in_others_says_which():
 def test_a_count_that_is_another_one_is_contradicted_by_the_rank_of_differences():
     """f = nu - rank J of (phi+ - phi-)/2h; the rows that are not redundant are as many as the rank."""
     model = eomgen.loads(HEAD + FOUR_BAR + HINGE + MIDDLE + coordinates(q1=1.0, q2=0.1, q3=1.0, q4=1.0))
-    found = eomgen.freedom_of(model)
-    assert counted_otherwise(model, {}, found) == ""
+    checked = checked_model(model)
+    found = checked.freedom
+    assert counted_otherwise(checked) == ""
     first = found.redundant[0]
     wrong = (
         replace(found, by_rank=(found.by_rank or 0) + 1),
@@ -192,7 +193,7 @@ def test_a_count_that_is_another_one_is_contradicted_by_the_rank_of_differences(
         replace(found, redundant=(replace(first, others=()), *found.redundant[1:])),
         replace(found, by_formula=7),
     )
-    assert all(counted_otherwise(model, {}, each) for each in wrong)
+    assert all(counted_otherwise(replace(checked, freedom=each)) for each in wrong)
 
 
 def test_components_that_are_held_twice_are_named():
@@ -209,10 +210,11 @@ joint = { kind = "placed", at = ["0.4*cos(psi)", "0.4*sin(psi)", 1], angle = "ps
 low = { kind = "pin", points = ["door.low"], axis = [0, 0, 1] }
 high = { kind = "pin", points = ["door.high"], axis = [0, 0, 1] }
 """)
-    found = eomgen.freedom_of(door)
-    assert len(found.redundant) == 5 and counted_otherwise(door, {}, found) == ""
-    fewer = replace(found, redundant=found.redundant[1:])
-    assert "5 components are held twice, and 4 named" in counted_otherwise(door, {}, fewer)
+    checked = checked_model(door)
+    found = checked.freedom
+    assert len(found.redundant) == 5 and counted_otherwise(checked) == ""
+    fewer = replace(checked, freedom=replace(found, redundant=found.redundant[1:]))
+    assert "5 components are held twice, and 4 named" in counted_otherwise(fewer)
 
 
 def test_a_count_that_is_printed_or_told_otherwise_is_seen():
@@ -220,7 +222,7 @@ def test_a_count_that_is_printed_or_told_otherwise_is_seen():
     found = checked_model(eomgen.loads(HEAD + FOUR_BAR + HINGE + MIDDLE + coordinates(q1=1.0, q2=0.1, q3=1.0, q4=1.0)))
     document = check_document(found.model)
     lines, reported = document.steps[0].statements[0].lines, document.entries()
-    assert reported["ok"] and lines_otherwise(lines, reported, found.freedom) == ""
+    assert reported["ok"] and lines_otherwise(lines, reported, found) == ""
     redundant = next(line for line in lines if line.startswith("redundant"))
     others = (
         [line.replace(": ", ": 7") if line.startswith("degrees") else line for line in lines],
@@ -228,9 +230,9 @@ def test_a_count_that_is_printed_or_told_otherwise_is_seen():
         [line.replace("row 1", "row 9").replace("row 2", "row 9") for line in lines],
         [line.replace("constraints that close: ", "constraints that close: and ") for line in lines],
     )
-    assert all(lines_otherwise([*each], reported, found.freedom) for each in others)
+    assert all(lines_otherwise([*each], reported, found) for each in others)
     for name in ("degrees_of_freedom", "by_formula", "redundant", "closing"):
-        assert lines_otherwise(lines, reported | {name: None}, found.freedom), name
+        assert lines_otherwise(lines, reported | {name: None}, found), name
 
 
 def test_what_the_rank_contradicts_is_not_ok_for_machines(monkeypatch):
@@ -248,11 +250,12 @@ def test_how_a_structure_stands_is_the_rank_of_its_reactions_in_doubles():
 
     beam = f"{HEAD}[bodies.b]\npoints = {{ A = [0, 0], B = [2, 0] }}\n[constraints]\n"
     pins = "".join(f'{x} = {{ kind = "pin", points = ["b.{x}"] }}\n' for x in "AB")
-    structure = checked_model(eomgen.loads(beam + pins)).structure
-    assert structure is not None and structure.indeterminacy == 1 and standing_otherwise(structure) == ""
+    checked = checked_model(eomgen.loads(beam + pins))
+    structure = checked.structure
+    assert structure is not None and structure.indeterminacy == 1 and standing_otherwise(checked) == ""
     names = ("system", "at", "unknowns", "pushes", "columns", "mobility", "rank")
     other = SimpleNamespace(**{name: getattr(structure, name) for name in names}, indeterminacy=0)
-    assert standing_otherwise(other)
+    assert standing_otherwise(replace(checked, structure=other))
 
 
 HINGED = """

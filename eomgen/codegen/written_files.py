@@ -100,6 +100,11 @@ class Written:
         """Its name in the files, before those of other functions."""
         return self.role.main(self.stem)
 
+    @property
+    def is_right_hand_side(self) -> bool:
+        """True if it gives the rates of the states."""
+        return self.role is Role.RHS
+
     def called(self) -> Called | None:
         """The written function, compiled; None where the language cannot be run here.
 

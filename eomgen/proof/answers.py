@@ -31,10 +31,10 @@ from eomgen.proof.instant import instant_checks, second_definition, values_of
 from eomgen.proof.masses import other_data
 from eomgen.proof.runs import run_checks
 from eomgen.proof.small_motions import small_motion_checks
-from eomgen.simulation import PhaseRun, Trajectory
+from eomgen.simulation import Trajectory
 from eomgen.study import MotionFromStart, StateAtInstant, Study, kinematic_state
 from eomgen.symbolic.expression import Call, Fraction, Node, Scalar, depends_on, symbols_of
-from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, has_pieces, number_of, numbers_of, tolerances
+from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, has_pieces, number_of, tolerances
 
 WAY = 1.0  # s, of the motion along which functions of the configuration are checked
 ROWS = 21  # samples of it
@@ -433,7 +433,7 @@ def _by_coincidence(moment: StateAtInstant, output: Output | None = None) -> str
         return ""
     p = {symbols.parameters[name]: Fraction(float(x)) for name, x in known.items()}
     t = moment.exact.get(symbols.t, 0)
-    numbers = dict(zip((symbols.t, *nodes), numbers_of((t, *(moment.exact[node] for node in nodes)), p), strict=True))
+    numbers = {symbols.t: number_of(t, p)} | {node: number_of(moment.exact[node], p) for node in nodes}
     if any(math.isnan(x) for x in numbers.values()):
         return ""  # near the parameters' own values it has no value
     state = NumericState(moment.phase.equations, p, numbers)
@@ -482,20 +482,20 @@ def wrong_way(motion: MotionFromStart, output: Output, moment: StateAtInstant) -
     t = moment.numbers.get(moment.phase.system.symbols.t, math.nan)
     if t == 0:
         return ""
-    runs = motion.runs_to(output.condition)
-    found = Certificate(run_checks(PhaseRun.joined(motion.models, runs), motion.models, motion.stepping))
+    found = Certificate(run_checks(motion.run_to(output.condition), motion.models, motion.stepping))
     if found.ok is None:
         raise DerivationError(
             "the motion has phases of which nothing could be checked",
             fix="give every parameter a value in [parameters]",
         )
     failing = [f"{check.name}: {check.detail}" for check in found.checks if check.ok is False]
-    return next(iter(failing), "") or _elsewhere(runs, output, moment) or _met_before(runs, output)
+    return next(iter(failing), "") or _elsewhere(motion, output, moment) or _met_before(motion, output)
 
 
-def _elsewhere(runs: Sequence[PhaseRun], output: Output, moment: StateAtInstant) -> str:
+def _elsewhere(motion: MotionFromStart, output: Output, moment: StateAtInstant) -> str:
     """Message if the state is not that at the end of the runs, or, with side "after", that after its event; ""."""
-    last = runs[-1]
+    assert output.condition is not None
+    last = motion.runs_to(output.condition)[-1]
     end = last.after.values if output.side == "after" and last.after is not None else last.end
     symbols, numbers = moment.phase.system.symbols, moment.numbers
     wrong = [node for node in symbols.x if _apart(numbers[node], end.get(node.name, 0.0))]
@@ -507,11 +507,11 @@ def _apart(x: float, y: float) -> bool:
     return not abs(x - y) <= tolerances.RUNS_AGREE * (1 + abs(y))
 
 
-def _met_before(runs: Sequence[PhaseRun], output: Output) -> str:
+def _met_before(motion: MotionFromStart, output: Output) -> str:
     """Message if left - right changes its sign within a phase, at the integrator's steps; ""."""
     condition = output.condition
     assert condition is not None
-    for run in runs:
+    for run in motion.runs_to(condition):
         phase = run.phase
         scalar = Study(phase.system).difference(condition)
         if type(scalar) is not Node:

@@ -19,7 +19,7 @@ import numpy as np
 from eomgen.errors import DerivationError, ModelError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion
-from eomgen.mechanics.equilibrium import Equilibrium, StaticEquations
+from eomgen.mechanics.equilibrium import Equilibrium
 from eomgen.mechanics.free_bodies import Reactions, SystemFriction
 from eomgen.mechanics.linearization import FirstOrder
 from eomgen.mechanics.start import Start
@@ -197,7 +197,7 @@ def certify_equilibria(places: Sequence[Equilibrium]) -> Certificate:
         return Certificate(())
     balanced = (balance_check(places), _pushes_check(places))
     try:
-        first = FirstOrder.of(StaticEquations.standing(places[0].statics.system))
+        first = FirstOrder.of(places[0].statics.still)
         equations = certify(first.equations, begins=False)
     except (ModelError, DerivationError) as error:  # a massless coordinate, say: there is rest, and no motion
         return Certificate((*balanced, unchecked(NOTHING_ACCELERATED, error.what, BY_MOTION)))
@@ -216,7 +216,7 @@ def _unbalanced(place: Equilibrium) -> str:
     known: dict[Node, Any] = statics.system.scope.values_of_parameters(Random(3))
     known |= _places(place, statics.unknowns, known)
     left = evaluate(statics.equations, known, digits)
-    for i, (x, usual) in enumerate(zip(left, _usual(statics, known), strict=True)):
+    for i, (x, usual) in enumerate(zip(left, _usual(place, known), strict=True)):
         if abs(x) > tolerances.COMPUTED * usual + tolerances.ZERO_AT_50:
             return f"{float(x):.3g} is left of equation {i + 1}"
     return _unbalanced_along(place, known)
@@ -230,14 +230,15 @@ def _unbalanced_along(place: Equilibrium, known: Mapping[Node, Any]) -> str:
     for z in points:
         there = {**known, **{x: digits.number(float(v)) for x, v in zip(statics.unknowns, z, strict=True)}}
         left = evaluate(statics.equations, there, digits)
-        for x, usual in zip(left, _usual(statics, there), strict=True):
+        for x, usual in zip(left, _usual(place, there), strict=True):
             if abs(x) > tolerances.SAME_PLACE * usual + tolerances.ZERO_AT_50:
                 return f"{float(x):.3g} is left along the family, at {statics.q[0].name} = {z[0]:.6g}"
     return ""
 
 
-def _usual(statics: StaticEquations, known: Mapping[Node, Any]) -> list[Any]:
+def _usual(place: Equilibrium, known: Mapping[Node, Any]) -> list[Any]:
     """Usual size of each equation: its change when every unknown changes by its own size, or by 1."""
+    statics = place.statics
     slopes = jacobian(statics.equations, statics.unknowns)
     values = iter(evaluate(tuple(x for row in slopes for x in row), known, fifty_digits()))
     sizes = [max(1, abs(known[x])) for x in statics.unknowns]
@@ -256,7 +257,7 @@ def _pushed(place: Equilibrium) -> str:
     Multipliers that stand in no equation are set to 0.
     """
     statics = place.statics
-    standing = StaticEquations.standing(statics.system)
+    standing = statics.still
     free = standing.free or standing
     symbols, digits = free.symbols, fifty_digits()
     known: dict[Node, Any] = free.scope.values_of_parameters(Random(3))
@@ -266,7 +267,7 @@ def _pushed(place: Equilibrium) -> str:
     known |= dict(zip(held, evaluate(tuple(held.values()), known, digits), strict=True))
     stays = [q for q in symbols.places if q not in statics.q and (q in place.exact or q in place.numbers)]
     known |= _places(place, (*statics.unknowns, *stays), known)
-    most = max(_usual(statics, known), default=0)
+    most = max(_usual(place, known), default=0)
     left = dict(zip((u.name for u in symbols.u), demand_of(free, with_inputs(free, known)).forces, strict=True))
     for four in free.scope.quaternions:  # along itself a quaternion cannot change: what is left there pushes nothing
         rates = {f"{e.name}'": known[e] for e in four}

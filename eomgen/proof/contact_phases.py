@@ -31,12 +31,12 @@ from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.mechanics.free_bodies import Reactions, SystemFriction
 from eomgen.mechanics.kinematics import ContactMode, SystemInertia
 from eomgen.mechanics.start import Start
-from eomgen.model import Contact, Resistance
+from eomgen.model import Contact
 from eomgen.proof.check import Check, Tally
 from eomgen.proof.impacts import Touched, after_impact, around
 from eomgen.proof.posed_model import misplaced
 from eomgen.proof.states import InNumbers, own_start
-from eomgen.simulation import Phase, PhaseModel, ReactionColumns, sliding_velocity
+from eomgen.simulation import Phase, PhaseModel, ReactionColumns
 from eomgen.symbolic.expression import Scalar, State, is_zero
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 
@@ -98,7 +98,7 @@ class _Seen:
             grip = self._along(system.scope.value(contact.grip)) * whole
             held = np.hypot.reduce(self._forces(contact, ("t", "s", "friction")), axis=0)
             return self._least("it sticks beyond its grip by", grip - held, self._most, "N")
-        v = (mode.sense or 0) * self._along(sliding_velocity(system, contact))
+        v = (mode.sense or 0) * self._along(system.sliding_velocity(contact))
         return self._least("it slides against its sense by", v, self._size("rates"), "m/s")
 
     def _least(self, what: str, values: np.ndarray, size: float, unit: str) -> str:
@@ -523,7 +523,7 @@ def other_friction(system: System, state: State) -> str:
         slides = (
             bool(system.modes.get(name, ContactMode()).sense) or along != 0
         )  # in a phase it slides one way, also from rest
-        due = [_declared(proof, law, along, slides) for law in _laws(system, name)]
+        due = [*_declared(proof, name, along, slides)]
         due = [_by_euler(proof, rope) * slides] if (rope := _rope(system, name)) is not None else due
         if all(abs(abs(found) - x) > tolerances.ZERO_AT_50 * (1 + x) for x in due):
             return f"the friction of '{name}' is {float(abs(found)):.10g} times its normal force, not as declared"
@@ -543,29 +543,24 @@ def _by_euler(proof: InNumbers, rope: Any) -> Any:
     return 2 * (ratio - 1) / (ratio + 1)
 
 
-def _laws(system: System, name: str) -> Iterator[Resistance | None]:
-    """Friction laws of a constraint, or of the pieces of a path."""
-    model = system.scope.model
+def _declared(proof: InNumbers, name: str, speed: Any, slides: bool) -> Iterator[Any]:
+    """|F|/|N| by the friction laws of a constraint, or of the pieces of a path; 0 without one."""
+    model, scope = proof.system.scope.model, proof.system.scope
     if name in model.constraints:
-        yield getattr(model.constraints[name], "friction", None)
-        return
-    joint: Any = model.bodies[name].joint
-    yield from (piece.friction for piece in getattr(joint, "pieces", ()))
-    yield from (law for _, _, law in joint.frictions)
-
-
-def _declared(proof: InNumbers, law: Resistance | None, speed: Any, slides: bool) -> Any:
-    """|F|/|N|"""
-    if law is None:
-        return 0
-    smooth = getattr(law, "smooth", None)
-    if smooth is not None:
-        slides = fifty_digits().functions["tanh"](speed / proof.one(proof.system.scope.value(smooth)))
-    own = [getattr(law, name, None) for name in ("coefficient", "radius")]  # of a joint: mu, and of a hinge r
-    if law.coulomb is not None:
-        sizes = [proof.one(proof.system.scope.value(x)) for x in (own if own[0] is not None else [law.coulomb]) if x]
-        return abs(math.prod(sizes)) * slides
-    return abs(proof.one(proof.system.scope.value(law.viscous))) * speed
+        laws: list[Any] = [getattr(model.constraints[name], "friction", None)]
+    else:
+        joint: Any = model.bodies[name].joint
+        laws = [piece.friction for piece in getattr(joint, "pieces", ())] + [law for _, _, law in joint.frictions]
+    for law in laws:
+        smooth, own = getattr(law, "smooth", None), [getattr(law, x, None) for x in ("coefficient", "radius")]
+        if law is None:
+            yield 0
+        elif law.coulomb is None:
+            yield abs(proof.one(scope.value(law.viscous))) * speed
+        else:  # of a joint: mu, and of a hinge r
+            sizes = [proof.one(scope.value(x)) for x in (own if own[0] is not None else [law.coulomb]) if x]
+            tanh = fifty_digits().functions["tanh"]
+            yield abs(math.prod(sizes)) * (slides if smooth is None else tanh(speed / proof.one(scope.value(smooth))))
 
 
 def leaving_at_start(equations: EquationsOfMotion) -> str:

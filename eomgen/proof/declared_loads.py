@@ -9,13 +9,11 @@ from typing import Any
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.mechanics.kinematics import (
-    Applied,
     BodyLink,
     ContactMode,
-    JointEffort,
     SystemScene,
 )
-from eomgen.model import Act, in_order
+from eomgen.model import Act
 from eomgen.proof.declared_threads import RopeInNumbers
 from eomgen.proof.states import (
     STEP,
@@ -28,7 +26,7 @@ from eomgen.proof.states import (
     pushes_of,
     way_through,
 )
-from eomgen.symbolic.expression import Graph, Scalar, State, Vector, is_zero
+from eomgen.symbolic.expression import Scalar, State, Vector, is_zero
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 
 # -------- declared work ---------------------------------------------------------------------------------------
@@ -313,13 +311,14 @@ def declared_state_rates(system: System, known: State) -> dict[str, Any]:
     laws = {name: law for name, law in declared.items() if law is not None}
     standing = frozenset[str]().union(*(law.names for law in laws.values())) - {"pi"}
     needed = tuple(standing & names.keys() - declared.keys())
-    graph, digits = Graph(), fifty_digits()
-    own = {name: graph.symbol(name) for name in standing}
+    graph, digits = system.scope.graph, fifty_digits()
+    own = {name: graph.symbol(f"({name})") for name in standing}  # no name of a model has parentheses
     values = dict(zip((own[x] for x in needed), evaluate([names[x] for x in needed], known, digits), strict=True))
     values |= {own[name]: rate for name, rate in of_forces.items() if name in own}
     found: dict[str, Any] = {name[:-1]: rate for name, rate in of_forces.items()}
-    for name in in_order(laws)[0]:
-        scalar = laws[name].evaluate({**own, "pi": graph.pi})
+    while laws:
+        name = next(x for x, law in laws.items() if law.names.isdisjoint(laws))  # by rates that are there
+        scalar = laws.pop(name).evaluate({**own, "pi": graph.pi})
         found[name[:-1]] = evaluate((scalar,), values, digits)[0]
         if name in own:
             values[own[name]] = found[name[:-1]]
@@ -357,10 +356,9 @@ def mass_that_enters(system: System, known: State, body: str) -> Any:
 # and their energies.
 
 
-def elements_of(system: System) -> tuple[Applied, ...]:
-    """The springs, dampers and pulls of a system."""
-    forces = system.scope.model.forces
-    return tuple(applied for applied in system.loads.applied if forces[applied.name].element is not None)
+def has_elements(system: System) -> bool:
+    """True if a spring, a damper or a pull acts."""
+    return any(system.scope.model.forces[applied.name].element is not None for applied in system.loads.applied)
 
 
 def undeclared(system: System, state: State) -> str:
@@ -369,13 +367,7 @@ def undeclared(system: System, state: State) -> str:
     Raises:
         NoValue: something has no value there.
     """
-    for applied in elements_of(system):
-        if wrong := _element(Declared(system, state), applied):
-            return f"forces.{applied.name} {wrong}"
-    for effort in system.loads.efforts:
-        if wrong := _in_joint(system, state, effort):
-            return f"bodies.{effort.body}.joint {wrong}"
-    return ""
+    return next(_wrong_elements(Declared(system, state)), "") or next(_wrong_in_joints(system, state), "")
 
 
 def acting(system: System, state: State, force: str) -> Any:
@@ -383,38 +375,41 @@ def acting(system: System, state: State, force: str) -> Any:
     return system.scope.model.forces[force].pulled(Declared(system, state))
 
 
-def _element(proof: Declared, applied: Applied) -> str:
-    """Message if the loads or the energy of an element are not those of its law; ""."""
-    element = proof.system.scope.model.forces[applied.name].element
-    assert element is not None
-    pull, energy = element.law(proof)
-    reach: Any = 1 + max((proof.vector(proof.place(point)[1]).largest for point in element.points), default=0)
-    stated = pushes_of(proof.motion, proof.state, applied.loads)
-    if body := pushed_otherwise(stated, proof.pushes(element.acts(proof)), (1 + abs(pull)) * reach):
-        return f"pushes '{body}' otherwise than its length and rate say"
-    if energy is not None and applied.potential is not None:
-        return _energy(proof.at((applied.potential,))[0], energy)
-    return ""
+def _wrong_elements(proof: Declared) -> Iterator[str]:
+    """Messages of elements whose loads or energy are not those of their law."""
+    for applied in proof.system.loads.applied:
+        element = proof.system.scope.model.forces[applied.name].element
+        if element is None:
+            continue
+        pull, energy = element.law(proof)
+        reach: Any = 1 + max((proof.vector(proof.place(point)[1]).largest for point in element.points), default=0)
+        stated = pushes_of(proof.motion, proof.state, applied.loads)
+        if body := pushed_otherwise(stated, proof.pushes(element.acts(proof)), (1 + abs(pull)) * reach):
+            yield f"forces.{applied.name} pushes '{body}' otherwise than its length and rate say"
+        elif energy is not None and applied.potential is not None:
+            wrong = _energy(proof.one(applied.potential), energy)
+            yield from [f"forces.{applied.name} {wrong}"] if wrong else []
 
 
-def _in_joint(system: System, state: State, effort: JointEffort) -> str:
-    """effort = drive - c s' - k (s - rest), V = k (s - rest)^2 / 2: s from the poses, s' from the twists of both.
+def _wrong_in_joints(system: System, state: State) -> Iterator[str]:
+    """Messages where not effort = drive - c s' - k (s - rest), V = k (s - rest)^2 / 2, s by poses, s' by twists.
 
     Raises:
         NoValue: the joint turns about several axes; a pose does not determine its angles.
     """
-    link, scope = system.motion.link(effort.body), system.scope
-    law = link.joint.pushes()[effort.variable]
-    declared = tuple(map(scope.value, (law.push, law.damping, law.stiffness, law.rest)))
-    drive, c, k, rest, stated, V = evaluate((*declared, effort.effort, effort.potential), state, fifty_digits())
-    s, rate = _joint_motion(system, state, link, effort.variable)
-    stretch, drive = s - rest, drive + _in_its_joint(system, state, (link, effort.variable), rate)
-    if _turns(link, effort.variable) and k != 0:
-        stretch = _by_whole_turns(stretch, (drive - c * rate - stated) / k)
-    left, energy = stated - (drive - c * rate - k * stretch), k * stretch * stretch / 2
-    if abs(left) > tolerances.ZERO_AT_50 * (1 + abs(stated)):
-        return "pushes otherwise than its drive, rate and place say"
-    return _energy(V, energy)
+    for effort in system.loads.efforts:
+        link, scope = system.motion.link(effort.body), system.scope
+        law = link.joint.pushes()[effort.variable]
+        declared = tuple(map(scope.value, (law.push, law.damping, law.stiffness, law.rest)))
+        drive, c, k, rest, stated, V = evaluate((*declared, effort.effort, effort.potential), state, fifty_digits())
+        s, rate = _joint_motion(system, state, link, effort.variable)
+        stretch, drive = s - rest, drive + _in_its_joint(system, state, (link, effort.variable), rate)
+        if _turns(link, effort.variable) and k != 0:
+            stretch = _by_whole_turns(stretch, (drive - c * rate - stated) / k)
+        left, energy = stated - (drive - c * rate - k * stretch), k * stretch * stretch / 2
+        wrong = "pushes otherwise than its drive, rate and place say"
+        wrong = wrong if abs(left) > tolerances.ZERO_AT_50 * (1 + abs(stated)) else _energy(V, energy)
+        yield from [f"bodies.{effort.body}.joint {wrong}"] if wrong else []
 
 
 def _in_its_joint(system: System, state: State, acting: tuple[BodyLink, int], rate: Any) -> Any:

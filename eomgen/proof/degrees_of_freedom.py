@@ -24,15 +24,14 @@ import numpy as np
 
 from eomgen.errors import DerivationError, ModelError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import Closure, Constraints, Freedom, Row
+from eomgen.mechanics.constraints import Closure, Constraints, Row
 from eomgen.mechanics.dynamics import EquationsOfMotion, System
-from eomgen.mechanics.free_bodies import Structure
-from eomgen.mechanics.kinematics import Applied, ContactModes, Motion, Scope
+from eomgen.mechanics.kinematics import Motion, Scope
 from eomgen.mechanics.start import Start
-from eomgen.model import Model
 from eomgen.proof.check import first_wrong
 from eomgen.proof.declared_loads import declared_state_rates
 from eomgen.proof.states import STEP
+from eomgen.study import Checked
 from eomgen.symbolic.expression import Node, Scalar, State, Vector, jacobian, symbols_of
 from eomgen.symbolic.numeric import (
     NoValue,
@@ -48,44 +47,49 @@ MOST = 60  # speeds, of which the differences are taken
 SUMMAND = re.compile(r"([+-]?)\s*(?:(\d+)\*)?(\d+) \([^)]*\)")  # of a count: "3*2 (bodies) - 4 (joints)"
 
 
-def counted_otherwise(model: Model, modes: ContactModes, found: Freedom, structure: Structure | None = None) -> str:
+def counted_otherwise(checked: Checked) -> str:
     """Message if the count of degrees of freedom, or the rank of a structure, is another in numbers; "".
 
     "" too where nothing was counted.
     """
-    return _freer(model, modes, found) or ("" if structure is None else standing_otherwise(structure))
+    return _freer(checked) or standing_otherwise(checked)
 
 
-def _freer(model: Model, modes: ContactModes, found: Freedom) -> str:
+def _freer(checked: Checked) -> str:
+    found = checked.freedom
     if found.by_formula is not None and _summed(found.formula) != found.by_formula:
         return f"the count {found.formula} is {_summed(found.formula)}, not {found.by_formula}"
     if found.by_rank is None:
         return ""
     try:
-        constraints = Constraints.of(Motion.of(Scope.of(model)), modes=modes)
-        if wrong := _unnamed(constraints, found):
+        constraints = Constraints.of(Motion.of(Scope.of(checked.model)), modes=checked.modes)
+        if wrong := _unnamed(constraints, checked):
             return wrong
         if not constraints.closing or len(constraints.motion.scope.symbols.u) > MOST:
             return ""
-        return _by_differences(constraints, Closure(constraints).generic(29), found)
+        return _by_differences(constraints, Closure(constraints).generic(29), checked)
     except (DerivationError, ModelError, NoValue, ZeroDivisionError):  # the count has said so
         return ""
 
 
-def _unnamed(constraints: Constraints, found: Freedom) -> str:
+def _unnamed(constraints: Constraints, checked: Checked) -> str:
     """Message if fewer rows are named as redundant than the count by components lacks; "".
 
     The count takes off every component that is held: what it lacks of the degrees of freedom by rank is held twice.
     Nothing is compared where a constraint acts on no body.
     """
+    found = checked.freedom
     if found.by_rank is None or found.by_formula is None or not all(row.wrenches for row in constraints.rows):
         return ""
     lacking = found.by_rank - found.by_formula
     return f"{lacking} components are held twice, and {len(found.redundant)} named" * (lacking > len(found.redundant))
 
 
-def standing_otherwise(structure: Structure) -> str:
+def standing_otherwise(checked: Checked) -> str:
     """Message if the rank of a structure is another in doubles; ""."""
+    structure = checked.structure
+    if structure is None:
+        return ""
     state = structure.system.scope.values_of_parameters(Random(3))
     try:
         at = evaluate(tuple(structure.at.values()), state, fifty_digits())
@@ -107,8 +111,9 @@ def _doubles(v: Vector, known: State) -> np.ndarray:
     return np.array([float(x) for x in evaluate(tuple(v), known, fifty_digits())])
 
 
-def lines_otherwise(lines: Sequence[str], reported: Mapping[str, Any], found: Freedom) -> str:
+def lines_otherwise(lines: Sequence[str], reported: Mapping[str, Any], checked: Checked) -> str:
     """Message if a count is printed, or reported to machines, otherwise than it was found; ""."""
+    found = checked.freedom
     due = {
         "degrees_of_freedom": found.by_rank,
         "by_formula": found.by_formula,
@@ -179,7 +184,8 @@ def _summed(formula: str) -> int:
     return sum((-1 if sign == "-" else 1) * int(factor or 1) * int(many) for sign, factor, many in terms)
 
 
-def _by_differences(constraints: Constraints, state: State, found: Freedom) -> str:
+def _by_differences(constraints: Constraints, state: State, checked: Checked) -> str:
+    found = checked.freedom
     scope = constraints.motion.scope
     still = [row for row in constraints.rows if row.identical and row.gap is not None]
     for row, line in zip(still, _lines(constraints, still, state), strict=True):
@@ -261,10 +267,10 @@ def open_at_start(system: System, state: State) -> str:
     return ""
 
 
-def springs_of_the_start(system: System) -> tuple[Applied, ...]:
-    """The springs that are slack at the length, or angle, which they have at the start."""
+def springs_of_the_start(system: System) -> dict[str, Scalar | None]:
+    """Energies of the springs that are slack at the length, or angle, which they have at the start."""
     forces = system.scope.model.forces
-    return tuple(applied for applied in system.loads.applied if forces[applied.name].of_the_start)
+    return {applied.name: applied.potential for applied in system.loads.applied if forces[applied.name].of_the_start}
 
 
 def pulled_at_start(system: System) -> str:
@@ -281,9 +287,9 @@ def pulled_at_start(system: System) -> str:
     known = system.scope.model.exact_parameters()
     state = {node: float(known[name]) for name, node in symbols.parameters.items() if name in known}
     state |= {node: start.get(node.name, 0.0) for node in symbols.x} | {symbols.t: 0.0}
-    for applied in springs_of_the_start(system):
-        if applied.potential is not None and evaluate((applied.potential,), state)[0] > tolerances.SOLVED:
-            return f"forces.{applied.name} is not slack where the motion starts"
+    for name, potential in springs_of_the_start(system).items():
+        if potential is not None and evaluate((potential,), state)[0] > tolerances.SOLVED:
+            return f"forces.{name} is not slack where the motion starts"
     return ""
 
 

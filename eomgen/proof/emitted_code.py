@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen import Role, Written
+from eomgen.codegen import Written
 from eomgen.errors import RunFailed, TextRefused, ToolMissing
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Closure
@@ -416,7 +416,7 @@ class Judged:
 
     def _by_symbols(self, written: Written, code: Code, start: Sequence[TriedState], name: str) -> Check:
         """Check of the code at given states against the symbols there."""
-        if written.role is Role.RHS:
+        if written.is_right_hand_side:
             return equations_hold(self.motion, code, (*start, *_instants(written)), name)
         if self.slopes is not None:
             return self._slopes(code, _instants(written), name, self.slopes)

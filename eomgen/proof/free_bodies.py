@@ -27,16 +27,14 @@ from eomgen.mechanics.constraints import Closure
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies import (
     Balance,
-    DrivingForces,
     Effect,
-    Indeterminate,
     NamedReaction,
     Reactions,
     SystemFriction,
 )
 from eomgen.mechanics.kinematics import BodyLink, SystemInertia
 from eomgen.proof.states import STEP, InNumbers, Way, way_through
-from eomgen.symbolic.expression import Matrix, Node, Scalar, State, Vector, Wrench, gradient, pullback, symbols_of
+from eomgen.symbolic.expression import Matrix, Node, Scalar, State, Vector, Wrench, gradient, symbols_of
 from eomgen.symbolic.numeric import NoValue, balanced, evaluate, fifty_digits, rank, tolerances
 
 PARTS = 18  # numbers of a joint: E^T, r, r', s
@@ -72,7 +70,8 @@ def demand_of(system: System, state: State, h: Any = STEP) -> Demand:
     free, u = system.free, system.scope.symbols.u
     found = _demand(free, _with_free_motion(system, free, state, h), h)
     shares = tuple(system.scope.graph.symbol(f"(r{k})") for k in range(len(found.forces)))
-    rows = pullback(system.free_rates(free), shares, u)
+    rates = system.free_rates(free)
+    rows = gradient(sum((k * rate for k, rate in zip(shares, rates, strict=True)), start=0), u)
     forces = evaluate(rows, state | dict(zip(shares, found.forces, strict=True)), fifty_digits())
     slopes = evaluate([x for row in rows for x in gradient(row, shares)], state, fifty_digits())
     steepest = max(map(abs, slopes), default=0)  # near a dead centre dependent rates are many times those of the speeds
@@ -121,7 +120,7 @@ def drive_demanded(system: System, coordinate: str, known: State) -> tuple[Any, 
         raise NoValue("a constraint drives it")
     if SystemFriction(system).named:  # of what is driven alone too, where no equation of motion holds it
         raise NoValue("there is friction")
-    free = DrivingForces(system).let_go(coordinate)
+    free = system.let_go(coordinate)
     own = {**system.scope.names, **{lam.name: lam for lam in system.symbols.lam}}
     symbols = free.symbols
     moving = (*symbols.x, *symbols.a, *symbols.lam, *symbols.inputs.values(), symbols.t)
@@ -541,7 +540,7 @@ def driven_otherwise(reactions: Reactions, state: State) -> str:
         try:
             due, size = drive_demanded(reactions.balance.system, sides[named.name], state)
             value = reactions.combined(named.combination, named.name) + named.given
-        except (NoValue, Indeterminate):
+        except (NoValue, DerivationError):  # it has no single value
             continue
         (stated,) = evaluate((value,), state, fifty_digits())
         if abs(stated - due) > tolerances.COMPUTED * (size + abs(stated)):

@@ -20,7 +20,7 @@ import numpy as np
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Row
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.impacts import Hit, ImpactEquations, Jump
+from eomgen.mechanics.impacts import ImpactEquations
 from eomgen.mechanics.kinematics import SystemInertia
 from eomgen.model import PointForce
 from eomgen.proof.check import Check, Tally
@@ -193,24 +193,23 @@ def _jumps_otherwise(found: ImpactEquations, state: State) -> str:
     M = np.array([float(x) for x in values[: n * n]]).reshape(n, n)
     at = np.array([float(x) for x in values[n * n :]]).reshape(-1, n + 1)
     held = at[[k for k, row in enumerate(found.rows) if row.e is None]]
-    closes = [(k, row) for k, row in enumerate(found.rows) if row.e is not None]
-    hits = [Hit(row.name, at[k][None], float(_numbers((row.e,), state)[0])) for k, row in closes if row.e is not None]
-    if rubbing:  # then it closes alone
-        mu = abs(float(_numbers((rubbing[0].mu,), state)[0]))
-        hits = [replace(hit, mu=mu, tangents=at[len(found.rows) :]) for hit in hits]
+    closes = [row for row in found.rows if row.e is not None]
+    e = [None if row.e is None else float(_numbers((row.e,), state)[0]) for row in found.rows]
+    rub = None if not rubbing else (abs(float(_numbers((rubbing[0].mu,), state)[0])), at[len(found.rows) :])
     drawn = np.array([float(state[x]) for x in found.u])
     for u in (drawn, -drawn):
         if len(held):
             u = u - np.linalg.lstsq(held[:, :-1], held[:, :-1] @ u + held[:, -1], rcond=None)[0]
         moved = {**state, **dict(zip(found.u, map(fifty_digits().number, u.tolist()), strict=True))}
         there = _solved(found, moved)
-        if any(hit.speed(u) >= 0 for hit in hits) or any(there[row.impulse] < 0 for _, row in closes):
+        if any(there[row.impulse] < 0 for row in closes):
             continue
         due = np.array([float(there[x]) for x in found.after])
-        along = [hit.tangents for hit in hits if hit.tangents is not None]
-        if any(float(t[0, :-1] @ u + t[0, -1]) * float(t[0, :-1] @ due + t[0, -1]) <= 0 for t in along):
+        if rub is not None and any(float(t[:-1] @ u + t[-1]) * float(t[:-1] @ due + t[-1]) <= 0 for t in rub[1][:1]):
             continue
-        jumped = Jump.of(M, held, hits, u).u
+        jumped = found.jumped(M, at[: len(found.rows)], u, e=e, rub=rub)
+        if jumped is None:
+            continue
         wrong = np.max(np.abs(jumped - due)) > tolerances.CARRIED * (1 + np.max(np.abs(due)))
         return f"the law in numbers gives {jumped}, the formulas {due}" if wrong else ""
     raise NoValue("nothing is approached, an impulse would pull, or sliding stops")

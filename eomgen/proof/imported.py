@@ -23,7 +23,7 @@ from eomgen.proof.posed_model import (
     turn_about,
     turn_by_three,
 )
-from eomgen.robots import ImportedRobot, first_element
+from eomgen.robots import ImportedRobot
 from eomgen.symbolic.numeric import tolerances
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ def robot_otherwise(file: str, robot: ImportedRobot, equations: Callable[[], Equ
     Args:
         equations: derives those of the model, where few bodies move.
     """
-    model, root = robot.model, first_element(robot.source)
+    model, root = robot.model, robot.root
     if bare := without_units(model):
         return bare
     if root == "mujoco":

@@ -23,7 +23,7 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.instant import BodyMotion, KinematicState, Quantities
-from eomgen.mechanics.kinematics import JointEffort, SystemInertia
+from eomgen.mechanics.kinematics import SystemInertia
 from eomgen.model import FUNCTIONS, PointForce
 from eomgen.proof.at_a_state import NumericState
 from eomgen.proof.check import Check, checked, differing, unchecked
@@ -32,7 +32,7 @@ from eomgen.proof.degrees_of_freedom import Nearby
 from eomgen.proof.free_bodies import drive_demanded, multipliers_demanded
 from eomgen.proof.impacts import struck
 from eomgen.proof.states import SECOND_STEP, Pushes, Way, add_push, closed_state, pushes_of, way_through, with_inputs
-from eomgen.symbolic.expression import Call, Matrix, Node, Scalar, Vector, is_zero, parse_equation, symbols_of
+from eomgen.symbolic.expression import Call, Matrix, Node, Scalar, Vector, is_zero, parse, symbols_of
 from eomgen.symbolic.numeric import NoValue, eigenpairs_in_digits, evaluate, fifty_digits, rank, tolerances
 
 DIFFERENCES = "differences at 50 digits"
@@ -236,7 +236,8 @@ class _Proof:
         quantities = Quantities(self.state.system, self.state.state)
         names = self.state.system.scope.names
         for text in self.state.given:
-            sides = [side.evaluate(names, quantities.value) for side in parse_equation(text)]
+            typed = (parse(side, references=True) for side in text.split("="))
+            sides = [side.evaluate(names, quantities.value) for side in typed]
             left, right = evaluate(sides, self.way.now, fifty_digits())
             if abs(left - right) > self.tolerance * (abs(left) + abs(right) + self.size[0]):
                 return f"{text}: {float(left):.10g} and {float(right):.10g}"
@@ -558,8 +559,8 @@ class NearbyStates:
             raise NoValue("a potential depends on time")
         total = 0 * SECOND_STEP - sum(self.along(energies)[1])
         pushes = pushes_of(system.motion, known, (*placed, *loads.weights))
-        for effort in loads.efforts if body is not None else ():
-            self._add_effort(pushes, effort)
+        if body is not None:
+            self._add_efforts(pushes)
         for name, (moment, force) in pushes.items():
             if body in (None, name):
                 rates = Vector(self.along(self.scene.origin(name))[1])
@@ -574,20 +575,21 @@ class NearbyStates:
             total = total + push * self.along((link.s[effort.variable],))[1][0]
         return total
 
-    def _add_effort(self, pushes: Pushes, effort: JointEffort) -> None:
+    def _add_efforts(self, pushes: Pushes) -> None:
         """A couple about the axis, or a force along it at the joint, on the child; the opposite on the parent."""
-        motion = self.state.equations.system.motion
-        link = motion.link(effort.body)
-        turn, slide = link.S[effort.variable]
-        if not (all(map(is_zero, turn)) or all(map(is_zero, slide))):
-            raise NoValue("a joint that turns and slides at once")
-        along = link.pose.R @ (slide if all(map(is_zero, turn)) else turn)
-        flat = self.along((effort.effort, *along, *link.pose.point(link.point)))[0]
-        push, place = flat[0] * Vector(flat[1:4]), Vector(flat[4:7])
-        parent = None if link.parent < 0 else motion.links[link.parent].name
-        for name, sign in ((effort.body, 1), (parent, -1)):
-            own: Vector = sign * push
-            add_push(pushes, name, *((own, Vector.ZERO) if all(map(is_zero, slide)) else (place.cross(own), own)))
+        system = self.state.equations.system
+        for effort in system.loads.efforts:
+            link = system.motion.link(effort.body)
+            turn, slide = link.S[effort.variable]
+            if not (all(map(is_zero, turn)) or all(map(is_zero, slide))):
+                raise NoValue("a joint that turns and slides at once")
+            along = link.pose.R @ (slide if all(map(is_zero, turn)) else turn)
+            flat = self.along((effort.effort, *along, *link.pose.point(link.point)))[0]
+            push, place = flat[0] * Vector(flat[1:4]), Vector(flat[4:7])
+            parent = None if link.parent < 0 else system.motion.links[link.parent].name
+            for name, sign in ((effort.body, 1), (parent, -1)):
+                own: Vector = sign * push
+                add_push(pushes, name, *((own, Vector.ZERO) if all(map(is_zero, slide)) else (place.cross(own), own)))
 
     def acting(self, force: str) -> Any:
         """Force of an element between two points, or moment between two bodies, by its declaration."""

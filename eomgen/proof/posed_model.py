@@ -26,9 +26,9 @@ from eomgen.mechanics.kinematics import (
     Scope,
     SystemScene,
 )
-from eomgen.mechanics.start import Branches
 from eomgen.model import Meeting, Model
 from eomgen.proof.states import InNumbers, Pushes, direction_at, pushes_of, refuse_open
+from eomgen.study import Checked
 from eomgen.symbolic.expression import Matrix, Node, Scalar, State, Vector
 from eomgen.symbolic.numeric import evaluate, fifty_digits, tolerances
 
@@ -117,15 +117,18 @@ class PosedModel:
                 yield f"'{name}' leaves {left:.3g}" if abs(left) > tolerances.COMPUTED * 10 else ""
 
 
-def branches_otherwise(model: Model, start: Mapping[str, float], branches: Branches) -> str:
+def branches_otherwise(checked: Checked) -> str:
     """Message that names a pin which is on the other side of its links' hinges than reported; "".
 
     A hinge is where a body stays beside its parent, whatever its coordinates are. Where places depend on inputs nothing
     is decided.
     """
+    begun, branches = checked.start.begun, checked.start.branches
+    if begun is None or branches is None:
+        return ""
     with suppress(DerivationError):
         for way in (branches.here, *branches.others):
-            here = PosedModel(model, {**start, **way.values})
+            here = PosedModel(checked.model, {**begun.values, **way.values})
             for side in way.sides:
                 left = _is_left(here, side.constraint, (side.first, side.second))
                 if left is not None and left != side.left:

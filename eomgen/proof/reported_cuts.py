@@ -13,8 +13,9 @@ import numpy as np
 from eomgen.errors import ExpressionError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, exact_accelerations
+from eomgen.mechanics.free_bodies import NamedReaction
 from eomgen.mechanics.kinematics import SystemScene
-from eomgen.mechanics.statics import SectionForces, StaticReaction, StaticReactions
+from eomgen.mechanics.statics import SectionForces, StaticReactions
 from eomgen.proof.at_a_state import balanced_least
 from eomgen.proof.check import Check, Tally, differing
 from eomgen.proof.declared_loads import declared_pushes
@@ -340,8 +341,8 @@ class _Works:
     def wrong(self, reported: ReportedWork) -> str:
         reaction = self.found.by_name[reported.name]
         field = _Field(self, reported)
-        along, R = self.value_of(reported.along), self.balanced(reaction)
-        factors = self.factors(reaction)
+        along, R = self.value_of(reported.along), self.balanced(reaction.name, reaction.named)
+        factors = self.factors(reaction.name, reaction.named)
         for j, (owner, _) in enumerate(self.found.structure.pushes):
             work, size = field.work_of(j)
             if abs(work - along * factors.get(j, 0.0)) > tolerances.CARRIED * (size + abs(along)):
@@ -392,21 +393,21 @@ class _Works:
     def vector(self, v: Sequence[Scalar]) -> np.ndarray:
         return np.array([float(x) for x in evaluate(tuple(v), self.numbers)])
 
-    def factors(self, reaction: StaticReaction) -> dict[int, float]:
+    def factors(self, name: str, named: NamedReaction | None) -> dict[int, float]:
         """k_j of R = sum k_j rho_j."""
-        if reaction.named is None:
-            return {self.found.structure.index(reaction.name): 1.0}
-        return {j: float(self.vector((k,))[0]) for j, k in reaction.named.combination.items()}
+        if named is None:
+            return {self.found.structure.index(name): 1.0}
+        return {j: float(self.vector((k,))[0]) for j, k in named.combination.items()}
 
     @cached_property
     def _least(self) -> np.ndarray:
         return balanced_least(self.found.balance.balance, self.whole)[0]
 
-    def balanced(self, reaction: StaticReaction) -> float:
+    def balanced(self, name: str, named: NamedReaction | None) -> float:
         """R by the equilibrium of the bodies in numbers."""
-        given = 0 if reaction.named is None else reaction.named.given
+        given = 0 if named is None else named.given
         (own,) = evaluate((given,), self.whole, fifty_digits())
-        return float(sum(k * self._least[j] for j, k in self.factors(reaction).items())) + float(own)
+        return float(sum(k * self._least[j] for j, k in self.factors(name, named).items())) + float(own)
 
     @cached_property
     def centers(self) -> dict[str, np.ndarray]:

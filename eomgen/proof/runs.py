@@ -12,7 +12,7 @@ import numpy as np
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion
 from eomgen.mechanics.instant import Quantities
-from eomgen.model import Output, OutputSource, formula_at
+from eomgen.model import Output, OutputSource
 from eomgen.proof.certificate import certify
 from eomgen.proof.check import Certificate, Check, Tally, differing, unchecked
 from eomgen.proof.contact_phases import bodies_stand_as_reported, changes_follow_impulses, contacts_do_as_assumed
@@ -207,7 +207,7 @@ class SamplesOfRun:
         found = self.run.of(output).value
         if not isinstance(found, float) or reported is None:
             return "" if found is reported or isinstance(found, tuple) else f"{reported} for {found}"
-        values = (y for call in calls for _, y in self.run.sampled(formula_at(call, 0)))
+        values = (y for call in calls for _, y in self.run.curves(call))
         size = max(abs(found), self.run.duration, *(float(np.max(np.abs(y), initial=0.0)) for y in values))
         return "" if abs(reported - found) <= tolerances.CARRIED * size else f"{reported:.10g} for {found:.10g}"
 
@@ -234,9 +234,8 @@ class SamplesOfRun:
         trapezium rule, the last value is that of the last sample, and a period is the mean time between upward
         passages of the samples through the mean.
         """
-        formula = formula_at(call, 0)
         reported, when = self.run.called(call)
-        curves = self.run.sampled(formula)
+        curves = self.run.curves(call)
         values = np.concatenate([y for _, y in curves])
         size = float(np.max(np.abs(values)))
         if call.name == "period":

@@ -22,7 +22,7 @@ from eomgen.proof.contact_phases import leaving_at_start, other_friction, pushin
 from eomgen.proof.declared_loads import (
     acting_otherwise,
     declared_state_rates,
-    elements_of,
+    has_elements,
     undeclared,
     working_otherwise,
 )
@@ -406,7 +406,7 @@ class Trials:
 
     def elements(self) -> Iterable[Check]:
         """Check that springs, dampers and pulls act as they are declared; none without them."""
-        if elements_of(self.equations.system) or self.equations.system.loads.efforts:
+        if has_elements(self.equations.system) or self.equations.system.loads.efforts:
             name = "springs, dampers and drives act as they are declared, equal and opposite"
             yield self._at_states(name, "50 digits", lambda state: undeclared(self.equations.system, state))
 

@@ -40,19 +40,10 @@ def check_document(model: Model) -> Document:
     found = checked_model(model)
     lines = [*_declared_lines(found), *_freedom_lines(found), *_start_lines(found), *_rest_lines(found)]
     reported = {**_declared(found), **_counted(found), **_started(found)}
-    wrong = (
-        counted_otherwise(model, found.modes, found.freedom, found.structure)
-        or _closed_otherwise(found)
-        or lines_otherwise(lines, reported, found.freedom)
-    )
+    wrong = counted_otherwise(found) or branches_otherwise(found) or lines_otherwise(lines, reported, found)
     entries = {"ok": not wrong, **reported, "problems": [Problem("", wrong).as_dict()] if wrong else []}
     document = plain_document(model, lambda: entries, Lines(tuple(lines)), failed=wrong)
     return replace(document, cautions=found.cautions)
-
-
-def _closed_otherwise(found: Checked) -> str:
-    begun, branches = found.start.begun, found.start.branches
-    return "" if begun is None or branches is None else branches_otherwise(found.model, begun.values, branches)
 
 
 def _declared_lines(found: Checked) -> list[str]:

@@ -3,9 +3,6 @@
 # A robot of another program's file
 from eomgen.robots.importing import ImportedRobot as ImportedRobot
 
-# The name of the first element of an XML file
-from eomgen.robots.importing import first_element as first_element
-
 # Model of a robot in a file of another program
 from eomgen.robots.importing import import_robot as import_robot
 

@@ -36,6 +36,11 @@ class ImportedRobot:
     left_out: tuple[LeftOut, ...]
     source: bytes
 
+    @property
+    def root(self) -> str:
+        """The first element of the robot's file: its format."""
+        return first_element(self.source)
+
 
 def imported(path: str | Path, *, floating: bool = False, model: str | None = None) -> ImportedRobot:
     """The robot in a file: URDF, SDF, or MJCF (by the extra `[mujoco]`).

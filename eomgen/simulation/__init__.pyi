@@ -15,9 +15,6 @@ from eomgen.simulation.constraint_drift import nearness_of as nearness_of
 # Projection of states onto the constraints of a system; None where none closes
 from eomgen.simulation.constraint_drift import projection_of as projection_of
 
-# Sliding velocity of a closed contact with friction, along its tangent [m/s]
-from eomgen.simulation.contacts import sliding_velocity as sliding_velocity
-
 # The requested instants: so many, evenly spaced; or the instants themselves, in SI or with a unit
 from eomgen.simulation.integration import instants_of as instants_of
 

@@ -15,7 +15,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Rank, Row
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, WellPosed, with_accelerations
 from eomgen.mechanics.free_bodies import Indeterminate, Reactions
-from eomgen.mechanics.kinematics import ContactMode, SystemScene
+from eomgen.mechanics.kinematics import ContactMode
 from eomgen.model import Contact, Model, Table
 from eomgen.simulation.event_location import Measured
 from eomgen.simulation.reaction_columns import ReactionColumns
@@ -183,7 +183,7 @@ class ContactEvents:
         found = [Signal(name, f"N{k}" if k > 1 else "N", value, column) for k, (value, column) in normals]
         if contact.grip is None:
             return found
-        v, scope = sliding_velocity(self.system, contact), self.system.scope
+        v, scope = self.system.sliding_velocity(contact), self.system.scope
         found += [Signal(name, "slide", v), Signal(name, "slide'", scope.with_accelerations((v,))[0])]
         if self.mode(contact).sense == 0:
             found += [
@@ -235,13 +235,6 @@ class ContactEvents:
 def stopped_below(contact: Contact) -> Fraction | int:
     """The speed at which sliding stops: 0 where it has a sense that can turn; a speed only comes near to 0 [m/s]."""
     return STOPPED if contact.surface else 0
-
-
-def sliding_velocity(system: System, contact: Contact) -> Scalar:
-    """Sliding velocity of a closed contact with friction, along its tangent [m/s]."""
-    if contact.of_joint or contact.of_force:
-        return SystemScene(system.motion).slip(contact)
-    return next(r.sliding for r in system.constraints.rows if r.constraint == contact.name and r.tangent)
 
 
 def _resultant(forces: Sequence[tuple[Scalar, str]]) -> tuple[Scalar, str]:

@@ -19,7 +19,7 @@ from eomgen.mechanics.free_bodies import Indeterminate
 from eomgen.mechanics.kinematics import ContactMode
 from eomgen.mechanics.start import Start
 from eomgen.model import Contact, JointFriction, Model, Table
-from eomgen.simulation.contacts import Configuration, bounds_of, on_pieces, sliding_velocity, stopped_below
+from eomgen.simulation.contacts import Configuration, bounds_of, on_pieces, stopped_below
 from eomgen.simulation.event_location import Crossing
 from eomgen.simulation.phase_model import PhaseModel, Values, size_of_places, smallest_speed
 from eomgen.simulation.phase_models import OPEN, PhaseModels
@@ -397,7 +397,7 @@ def by_gauss(
     modes = {**near.modes, **{c.name: ContactMode(sense=1) for c in resting}}
     phase = phase_models.of(replace(near, modes=Table(modes)))
     system = phase.system
-    rates = [sliding_velocity(system, c) for c in resting]
+    rates = [system.sliding_velocity(c) for c in resting]
     u, n, k = system.symbols.u, len(resting), len(phase.equations.J)
     declared = [x for c in resting for x in (c.size, c.grip) if x is not None]
     sizes = tuple(ContactMode.size_of(system.scope, x) for x in declared)

@@ -17,7 +17,7 @@ from eomgen.mechanics.dynamics import EquationsOfMotion, System, assembled_by_re
 from eomgen.mechanics.free_bodies import equations_of_motion, with_friction
 from eomgen.mechanics.kinematics import GROUND, BodyLink, ContactMode, ContactModes
 from eomgen.model import Contact, Coordinate, Model, PointForce, Table
-from eomgen.simulation.contacts import Configuration, ContactEvents, bounds_of, on_pieces, sliding_velocity
+from eomgen.simulation.contacts import Configuration, ContactEvents, bounds_of, on_pieces
 from eomgen.simulation.impacts import WithoutContacts
 from eomgen.simulation.phase_model import Fed, PhaseModel, Values
 from eomgen.symbolic.exact import readable_all
@@ -83,7 +83,7 @@ class Slides:
     @cached_property
     def velocities(self) -> RightHandSide:
         """Function of them."""
-        scalars = tuple(sliding_velocity(self.system, contact) for contact in self.contacts)
+        scalars = tuple(self.system.sliding_velocity(contact) for contact in self.contacts)
         return RightHandSide.of(Program.of(scalars, self.system.symbols, inputs=self.system.inputs), "numpy")
 
 

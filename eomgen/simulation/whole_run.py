@@ -88,6 +88,10 @@ class WholeRun:
         states = [(run, *run.measured) for run in self.runs]
         return [(t, self._columns(formula, run).along(t, x)["asked"]) for run, t, x in states]
 
+    def curves(self, call: Call) -> list[tuple[np.ndarray, np.ndarray]]:
+        """The same of the formula in a function of the run."""
+        return self.sampled(formula_at(call, 0))
+
     def functions_in(self, output: Output) -> list[Call]:
         """The functions of the whole run in an output."""
         return [call for call in output.value.calls if call.name in _FUNCTIONS]

@@ -101,12 +101,11 @@ class StateAtInstant:
         Raises:
             DerivationError: there is no equilibrium, or a contact would have to pull there.
         """
-        from eomgen.mechanics.equilibrium import StaticEquations
 
         if study.statics.loaded:
             return _held(study.system)
         place = study.equilibria.nearest()
-        system = StaticEquations.standing(place.statics.system)
+        system = place.statics.still
         place.refuse_contradicted()
         held = f", {', '.join(place.statics.held)} held" if place.statics.held else ""
         exact = {**place.exact, **_still(system)}
@@ -497,6 +496,15 @@ class MotionFromStart:
         if condition.text not in self._runs:
             self._runs[condition.text] = self._run_to(condition)
         return self._runs[condition.text]
+
+    def run_to(self, condition: WrittenEquation) -> Trajectory:
+        """The motion through these phases.
+
+        Raises:
+            RunFailed: it is not met.
+        """
+        assert self.models is not None
+        return PhaseRun.joined(self.models, self.runs_to(condition))
 
     @cached_property
     def _runs(self) -> dict[str, list[PhaseRun]]:

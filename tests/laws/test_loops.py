@@ -17,6 +17,7 @@ import eomgen
 from eomgen.mechanics.start.assembly_modes import Branches
 from eomgen.mechanics.start.state import Start
 from eomgen.proof import branches_otherwise
+from eomgen.study import checked_model
 
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore:.*Statically indeterminate:RuntimeWarning")]
 MODELS = Path(__file__).parents[2] / "models"
@@ -244,14 +245,12 @@ def test_a_four_bar_closes_in_two_ways():
 
 def test_a_side_that_is_told_the_other_way_round_is_contradicted():
     """The pin of coupler and rocker is on the left in one branch and on the right in the other, by poses alone."""
-    plain = model("four_bar")
-    system = eomgen.derive(plain).system
-    start = Start.of(system).values
-    found = Branches.of(system, start)
-    assert branches_otherwise(plain, start, found) == ""
+    checked = checked_model(model("four_bar"))
+    found = checked.start.branches
+    assert found is not None and branches_otherwise(checked) == ""
     (side,) = found.here.sides
     turned = replace(found, here=replace(found.here, sides=(replace(side, left=not side.left),)))
-    assert "'B' is on the left" in branches_otherwise(plain, start, turned)
+    assert "'B' is on the left" in branches_otherwise(replace(checked, start=replace(checked.start, branches=turned)))
 
 
 @pytest.mark.parametrize("other", [False, True])

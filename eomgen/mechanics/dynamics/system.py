@@ -18,7 +18,7 @@ from eomgen.mechanics.kinematics import (
     SystemScene,
     shorter,
 )
-from eomgen.model import Model, Table, rate_matrix_of
+from eomgen.model import Contact, Model, Table, rate_matrix_of
 from eomgen.symbolic.exact import cramer, vanishes
 from eomgen.symbolic.expression import (
     Fraction,
@@ -70,6 +70,28 @@ class System:
     @property
     def scope(self) -> Scope:
         return self.motion.scope
+
+    def sliding_velocity(self, contact: Contact) -> Scalar:
+        """Sliding velocity of a closed contact with friction, along its tangent [m/s]."""
+        if contact.of_joint:
+            return self.motion.link(contact.body).s_rate[contact.variable]
+        return next(r.sliding for r in self.constraints.rows if r.constraint == contact.name and r.tangent)
+
+    def let_go(self, coordinate: str) -> System:
+        """The system with a driven coordinate free, which starts where it is driven from; found once.
+
+        A system over all rates stays one: rates that its constraints would give need not be those of a state.
+        """
+        key = ("let go", coordinate)
+        if key not in self.found:
+            coordinates = self.scope.model.coordinates
+            model = self.scope.model.altered(
+                coordinates=Table({**coordinates, coordinate: self.scope.let_go(coordinate)})
+            )
+            over_all = self.free is None and self.scope.dependent
+            self.found[key] = (System.free_of if over_all else System.of)(model, self.modes, begun_as=self)
+        free: System = self.found[key]
+        return free
 
     @cached_property
     def inputs(self) -> dict[str, Scalar]:

@@ -259,6 +259,11 @@ class StaticEquations:
             return system
         return _made_of(system.free, system.free.scope)
 
+    @property
+    def still(self) -> System:
+        """The system of it with everything held that moves with t."""
+        return StaticEquations.standing(self.system)
+
     @staticmethod
     def standing(system: System) -> System:
         """The system of `over_rates`, with everything that moves with t held where it is at t = 0."""

@@ -30,7 +30,7 @@ from eomgen.mechanics.free_bodies.friction import SystemFriction
 from eomgen.mechanics.free_bodies.reactions import Reactions
 from eomgen.mechanics.start import Start
 from eomgen.mechanics.state import Numbers, Split
-from eomgen.model import Table, nearest
+from eomgen.model import nearest
 from eomgen.symbolic.exact import cramer
 from eomgen.symbolic.expression import (
     Node,
@@ -237,25 +237,6 @@ class DrivingForces:
         found: Scalar = self.system.found["drive", coordinate]
         return found
 
-    def let_go(self, coordinate: str) -> System:
-        """The system with a driven coordinate free, which starts where it is driven from.
-
-        A system over all rates stays one: rates that its constraints would give need not be those of a state.
-        """
-        key = ("let go", coordinate)
-        if key not in self.system.found:
-            model = self.system.scope.model.altered(
-                coordinates=Table(
-                    {**self.system.scope.model.coordinates, coordinate: self.system.scope.let_go(coordinate)}
-                ),
-            )
-            over_all = self.system.free is None and self.system.scope.dependent
-            self.system.found[key] = (System.free_of if over_all else System.of)(
-                model, self.system.modes, begun_as=self.system
-            )
-        free: System = self.system.found[key]
-        return free
-
     def multiplier(self, constraint: str) -> Scalar:
         """lam of a constraint of one row in the equations of motion; a symbol where it closes.
 
@@ -290,7 +271,7 @@ def _drive(system: System, coordinate: str) -> Scalar:
             f"drive({coordinate}): '{coordinate}' is not driven, it moves freely",
             fix="ask it of a coordinate with `motion`, `rate` or `acceleration`",
         )
-    free = DrivingForces(system).let_go(coordinate)
+    free = system.let_go(coordinate)
     equations = assembled_by_recursion(free)
     k = [u.name for u in free.symbols.u].index(f"{coordinate}'")
     return _carried(drive_residual(equations, k), system) - _friction(system, free, k)

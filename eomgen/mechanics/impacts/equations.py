@@ -15,11 +15,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 
+import numpy as np
+
 from eomgen.errors import DerivationError, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Rank, Row, holds_identically
 from eomgen.mechanics.dynamics import System, assembled_by_recursion
 from eomgen.mechanics.free_bodies import Reactions
+from eomgen.mechanics.impacts.law import Hit, Jump
 from eomgen.mechanics.kinematics import ContactMode, SystemInertia
 from eomgen.model import Contact, Model
 from eomgen.symbolic.exact import book_form, cramer
@@ -117,6 +120,28 @@ class ImpactEquations:
     @property
     def u(self) -> tuple[Node, ...]:
         return self.system.symbols.u
+
+    def jumped(
+        self,
+        M: np.ndarray,
+        rows: np.ndarray,
+        u: np.ndarray,
+        *,
+        e: Sequence[float | None],
+        rub: tuple[float, np.ndarray] | None,
+    ) -> np.ndarray | None:
+        """Speeds after it by the law in numbers; None where a contact is not approached.
+
+        Args:
+            rows: (J, sigma) of its rows, k x (n + 1).
+            e: coefficients of restitution of these, None of what holds.
+            rub: mu, and (J, sigma) of the sliding velocities, of a contact that closes alone and rubs.
+        """
+        held = rows[[k for k, each in enumerate(e) if each is None]]
+        touching = ((k, x.name, each) for k, (x, each) in enumerate(zip(self.rows, e, strict=True)))
+        mu, tangents = rub or (0.0, None)
+        hits = [Hit(name, rows[k][None], each, mu=mu, tangents=tangents) for k, name, each in touching if each is not None]
+        return None if any(hit.speed(u) >= 0 for hit in hits) else Jump.of(M, held, hits, u).u
 
     @cached_property
     def balances(self) -> tuple[tuple[Scalar, Scalar], ...]:
