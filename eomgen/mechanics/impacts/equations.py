@@ -140,7 +140,9 @@ class ImpactEquations:
         held = rows[[k for k, each in enumerate(e) if each is None]]
         touching = ((k, x.name, each) for k, (x, each) in enumerate(zip(self.rows, e, strict=True)))
         mu, tangents = rub or (0.0, None)
-        hits = [Hit(name, rows[k][None], each, mu=mu, tangents=tangents) for k, name, each in touching if each is not None]
+        hits = [
+            Hit(name, rows[k][None], each, mu=mu, tangents=tangents) for k, name, each in touching if each is not None
+        ]
         return None if any(hit.speed(u) >= 0 for hit in hits) else Jump.of(M, held, hits, u).u
 
     @cached_property
