@@ -26,6 +26,7 @@ from eomgen.mechanics.kinematics import (
     Scope,
     SystemScene,
 )
+from eomgen.mechanics.start import Branches
 from eomgen.model import Meeting, Model
 from eomgen.proof.states import InNumbers, Pushes, direction_at, pushes_of, refuse_open
 from eomgen.study import Checked
@@ -127,13 +128,18 @@ def branches_otherwise(checked: Checked) -> str:
     if begun is None or branches is None:
         return ""
     with suppress(DerivationError):
-        for way in (branches.here, *branches.others):
-            here = PosedModel(checked.model, {**begun.values, **way.values})
-            for side in way.sides:
-                left = _is_left(here, side.constraint, (side.first, side.second))
-                if left is not None and left != side.left:
-                    found = f"'{side.constraint}' is on the {'left' if left else 'right'} of its links' hinges"
-                    return f"{found} where {way.words}" if way.words else found
+        return _sides_otherwise(checked.model, begun.values, branches)
+    return ""
+
+
+def _sides_otherwise(model: Model, start: Mapping[str, float], branches: Branches) -> str:
+    for way in (branches.here, *branches.others):
+        here = PosedModel(model, {**start, **way.values})
+        for side in way.sides:
+            left = _is_left(here, side.constraint, (side.first, side.second))
+            if left is not None and left != side.left:
+                found = f"'{side.constraint}' is on the {'left' if left else 'right'} of its links' hinges"
+                return f"{found} where {way.words}" if way.words else found
     return ""
 
 
