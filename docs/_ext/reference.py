@@ -43,6 +43,7 @@ from eomgen.model.fields import (  # noqa: E402
 )
 from eomgen.model.forces.cylinders import Valve  # noqa: E402
 from eomgen.model.forces.fluid import AddedMassRule  # noqa: E402
+from eomgen.model.forces.tyre import TyreLaw  # noqa: E402
 from eomgen.model.joints.base import Turned  # noqa: E402
 from eomgen.model.joints.path import PathPiece  # noqa: E402
 from eomgen.model.kinds import (  # noqa: E402
@@ -100,6 +101,7 @@ TABLES: Mapping[str, type[Any]] = {
     "inputs": Input,
     "bodies": Body,
     "valve": Valve,
+    "law of a tyre": TyreLaw,
     "pieces": Piece,
     "friction": Resistance,
     "friction of a hinge": HingeFriction,

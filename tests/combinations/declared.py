@@ -206,7 +206,7 @@ class Declared:
         self.inputs = d.get("inputs", {})
         self.tables = d.get("tables", {})
         self.forces = d.get("forces", {})
-        self.states = {**d.get("states", {}), **self._of_cylinders()}
+        self.states = {**d.get("states", {}), **self._of_forces()}
         self.points = d.get("points", {})
         self.bodies = {name: {**body, "name": name} for name, body in d.get("bodies", {}).items()}
         self.constraints = d.get("constraints", {})
@@ -215,14 +215,17 @@ class Declared:
         own = {name: f"{body.get('mass', '')} {body.get('inertia', '')}" for name, body in self.bodies.items()}
         self._changing = [name for name, text in own.items() if re.search(r"\bt\b", text)]
 
-    def _of_cylinders(self) -> dict[str, dict]:
-        """The pressures of cylinders that are states, by name: {start, of the force, its chamber}."""
+    def _of_forces(self) -> dict[str, dict]:
+        """States that forces bring along, by name: {start, law, of the force, its chamber or slip}."""
         found = {}
         for name, f in self.forces.items():
             if f["kind"] == "hydraulic_cylinder" or (f["kind"] == "pneumatic_cylinder" and "flows" in f):
                 for k in range(len(f["areas"])):
                     start = f["pressures"][k] if "pressures" in f else 0
-                    found[f"{name}_p_{k + 1}"] = {"start": start, "of": name, "chamber": k}
+                    found[f"{name}_p_{k + 1}"] = {"start": start, "law": "chamber", "of": name, "chamber": k}
+            for key, own in (("lateral", "slip"), ("longitudinal", "kappa")):
+                if f["kind"] == "tyre" and "relaxation" in f.get(key, {}):
+                    found[f"{name}_{own}"] = {"start": 0, "law": "slip", "of": name, "slip": own}
         return found
 
     def weigh(self, t: float) -> None:

@@ -704,6 +704,7 @@ class Drawing:
             "stroke": "12*d",
             "pressures": ["F0/d^2", "F0/(2*d^2)"],
         }
+        magic = {"B": 2.5, "C": 1.4, "D": "F0"}
         rated = {"opening": "0.4*sin(w*t)", "flow": "d^3*w/9", "drop": "F0/d^2", "supply": "3*F0/d^2"}
         if how == "spring_moved":
             self.bodies["tool"].setdefault("points", {})["S"] = self.v(
@@ -822,6 +823,23 @@ class Drawing:
                     if own.random() < 0.5
                     else {"matrix": _square(3 if plane else 6)}
                 ),
+            },
+            "tyre": {
+                "kind": "tyre",
+                "point": point,
+                "lateral": own.choice(({"stiffness": "3*F0"}, {**magic, "relaxation": "d/3"}, {**magic, "E": -0.3})),
+                **own.choice(({}, {"longitudinal": {**magic, "relaxation": "d/2"}, "rolling": "d*w*sin(w*t)"})),
+                "heading": self.v(*own.choice(((1, 0, 0), (3, 4, 0), (1, 2, 2)))),
+                "smooth": "d*w",
+            },
+            "tyre_wheel": {
+                "kind": "tyre",
+                "point": point,
+                "radius": "d/4",
+                "longitudinal": own.choice(({"stiffness": "3*F0"}, magic, {**magic, "relaxation": "d/2"})),
+                **({} if plane else {"lateral": {"stiffness": "2*F0", "relaxation": "d"}, "axle": [1, 2, 0]}),
+                **own.choice(({}, {"up": self.v(3, 4, 1)})),
+                "smooth": "d*w",
             },
             "rope": {
                 "kind": "rope",

@@ -47,7 +47,7 @@ FORCES = (
     "gravity", "force", "follower", "couple", "distributed", "spring", "spring_along", "spring_start", "spring_moved",
     "damper", "damper_along", "torsion_spring", "torsion_damper", "between", "potential", "kinetic", "generalized",
     "values", "mass_flow", "rain", "bumper", "hydraulic", "gas", "air",
-    "rope", "gear_mesh", "drag", "plate", "buoyancy", "added_mass", "none",
+    "rope", "gear_mesh", "drag", "plate", "buoyancy", "added_mass", "tyre", "tyre_wheel", "none",
 )  # fmt: skip
 
 FACTORS: dict[str, tuple[str, ...]] = {

@@ -666,6 +666,59 @@ def _buoyancy(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
     return _at(name, f, now, rho * V * (_now(_stream(f, now).rate()) - _now(now.vector(f["acceleration"]))))
 
 
+def _rolling(f: dict, now: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, float, float, float]:
+    """(ahead, left, arm to the contact, |v_x|, v_y, r omega - v_x) of a wheel."""
+    body = _split(now, f["point"])
+    R, v = _now(now.poses[body][1]), _now(now.point(f["point"]).rate())
+    flat = now.model.plane and "radius" in f
+    up = _unit(now, [*f["up"], 0][:3]) if "up" in f else np.array([0.0, 1, 0] if flat else [0.0, 0, 1])
+    arm, faster = np.zeros(3), 0.0
+    if "radius" in f:
+        axle = np.array([0.0, 0, -1]) if flat else R @ _unit(now, f.get("axle", [0, 1, 0]))
+        ahead = np.cross(axle, up)
+        ahead /= np.linalg.norm(ahead)
+        arm = -now.model.number(f["radius"]) * np.cross(ahead, axle)
+        tread = v + np.cross(_now(now.spin(body)), arm)
+        faster = -tread @ ahead
+    else:
+        nose = R @ _unit(now, [*f.get("heading", [1, 0, 0]), 0][:3])
+        ahead = nose - (nose @ up) * up
+        ahead, tread = ahead / np.linalg.norm(ahead), v
+        faster = _number(now.value(f.get("rolling", 0))) - v @ ahead
+    left = np.cross(up, ahead)
+    return ahead, left, arm, float(np.hypot(v @ ahead, now.model.number(f.get("smooth", 0)))), tread @ left, faster
+
+
+def _of_slip(law: dict, s: float, now: Any) -> float:
+    """c s, or the magic formula."""
+    if "stiffness" in law:
+        return now.model.number(law["stiffness"]) * s
+    B, C, D, E = (now.model.number(law.get(x, 0)) for x in "BCDE")
+    return D * np.sin(C * np.arctan(B * s - E * (B * s - np.arctan(B * s))))
+
+
+def _tyre(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
+    if _split(now, f["point"]) is None:
+        return []
+    ahead, left, arm, speed, drift, faster = _rolling(f, now)
+    F = np.zeros(3)
+    if "lateral" in f:
+        F -= _of_slip(f["lateral"], np.arctan(now.states.get(f"{name}_slip", drift / speed)), now) * left
+    if "longitudinal" in f:
+        F += _of_slip(f["longitudinal"], now.states.get(f"{name}_kappa", faster / speed), now) * ahead
+    found = _at(name, f, now, F)
+    return [*found, Load(name, found[0].body, torque=np.cross(arm, F))]
+
+
+def _slip(now: Any, declared: dict) -> float:
+    """s' of a slip that relaxes along the way of the wheel."""
+    f, own = now.model.forces[declared["of"]], declared["slip"]
+    _, _, _, speed, drift, faster = _rolling(f, now)
+    law = f["lateral" if own == "slip" else "longitudinal"]
+    s = now.states[f"{declared['of']}_{own}"]
+    return ((drift if own == "slip" else faster) - speed * s) / now.model.number(law["relaxation"])
+
+
 def _gear_mesh(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
     """Teeth push beyond half the play, - M on the first and ratio M on the second; the driven one gets its share."""
     first, second = f["bodies"]
@@ -806,7 +859,7 @@ FORCES: dict[str, Callable] = {
     "potential": _potential, "generalized": _generalized, "kinetic": lambda *_: [], "mass_flow": _mass_flow,
     "bumper": _bumper, "rope": _rope, "gear_mesh": _gear_mesh, "hydraulic_cylinder": _cylinder,
     "pneumatic_cylinder": _cylinder, "drag": _drag, "plate": _plate, "buoyancy": _buoyancy,
-    "added_mass": lambda *_: [],
+    "added_mass": lambda *_: [], "tyre": _tyre,
 }  # fmt: skip
 
 
@@ -978,7 +1031,7 @@ def _rate(now: Any, declared: dict) -> float:
     return float(jet(now.value(declared["rate"])).c[0][0])
 
 
-STATES: dict[str, Callable] = {"rate": _rate, "chamber": _chamber}
+STATES: dict[str, Callable] = {"rate": _rate, "chamber": _chamber, "slip": _slip}
 
 
 # friction, contacts, reactions

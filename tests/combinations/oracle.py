@@ -316,7 +316,7 @@ class Oracle:
     def state_rates(self, s: State, a: np.ndarray) -> np.ndarray:
         """z' of the states at a state with accelerations."""
         now = self.reduced(s, a)
-        laws_of = ((laws.STATES["chamber" if "of" in z else "rate"], z) for z in self.model.states.values())
+        laws_of = ((laws.STATES[z.get("law", "rate")], z) for z in self.model.states.values())
         return np.array([law(now, z) for law, z in laws_of])
 
     def speeds_of(

@@ -97,7 +97,9 @@ def of_law(table: str, law: str) -> compare.Product:
             space=space,
         )
     if table == "STATES":
-        return product(force="hydraulic") if law == "chamber" else product(state="pushes")
+        return product(
+            **{"chamber": {"force": "hydraulic"}, "slip": {"force": "tyre_wheel"}}.get(law, {"state": "pushes"})
+        )
     if table == "FORCES":
         return product(force=UNDER_ANOTHER_NAME.get(law, law), second_force="gravity")
     if table == "MOVING":

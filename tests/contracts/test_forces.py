@@ -35,6 +35,8 @@ TWO, GROUND = 'points = ["upper.R", "lower.P"]', 'points = ["G", "lower.P"]'
 ONE = 'areas = 2, volumes = "l", retracted = "l/9"'
 BOTH = 'areas = [3, "k/9"], volumes = ["l", 1], retracted = 0.1, stroke = 9'
 WARM = 'gas = "g", temperature = 3'
+MAGIC = 'B = "l", C = "w", D = "k"'
+ROLLS = 'longitudinal = { stiffness = "g", relaxation = "w" }'
 RATED = 'flow = "c", drop = "w"'
 INERTIAL = ("kinetic", "added_mass")
 SQUARE = [["m" if i == j else (i + j) / 20 for j in range(6)] for i in range(6)]
@@ -214,6 +216,19 @@ EXAMPLES = {
         SPACE: [
             'point = "lower.P", diagonal = ["m", "3*m", 2, 1, "l", "k"], medium = [0, "t^3", 1]',
             f'point = "lower.M", matrix = {SQUARE}',
+        ],
+    },
+    "tyre": {
+        PLANE: [
+            'point = "lower.P", lateral = { stiffness = "k*z" }',
+            f'point = "lower.P", lateral = {{ {MAGIC}, E = "z" }}, heading = [3, 1], smooth = "l"',
+            f'point = "upper.R", lateral = {{ {MAGIC}, relaxation = "l" }}, {ROLLS}, rolling = "w*t"',
+            'point = "lower.M", radius = "l", longitudinal = { stiffness = "k" }',
+            f'point = "lower.P", radius = "l", longitudinal = {{ {MAGIC}, relaxation = "c" }}, up = [1, 2], smooth = 1',
+        ],
+        SPACE: [
+            f'point = "lower.P", lateral = {{ {MAGIC}, relaxation = "l" }}, {ROLLS}, rolling = 2, heading = [1, 1, 0]',
+            f'point = "lower.P", radius = "l", lateral = {{ {MAGIC} }}, {ROLLS}, axle = [1, 2, 2], up = [0, 3, 4]',
         ],
     },
     "potential": {

@@ -244,6 +244,9 @@ acceleration = [0, -9.81]
         hull="kind = 'added_mass'\npoint = 'two.Q'\nmatrix = [['m', 0.1, 0], [0.1, 'k', 0.2], [0, 0.2, 1]]\n"
         "medium = ['sin(t)', 't']",
         hull_1="kind = 'added_mass'\npoint = 'one.end'\ndiagonal = ['m', 'k', 0.2]",
+        tyre="kind = 'tyre'\npoint = 'two.Q'\nlateral = { B = 2, C = 1.3, D = 'k', E = 'c', relaxation = 'l' }\n"
+        "longitudinal = { stiffness = 'k', relaxation = 0.2 }\nheading = [1, 'u']\nrolling = 'u'\nsmooth = 0.2",
+        wheel="kind = 'tyre'\npoint = 'one.end'\nradius = 'l'\nlongitudinal = { B = 2, C = 1.3, D = 'k' }\nup = [1, 2]",
         rain="kind = 'mass_flow'\npoint = 'two.end'\nabsolute = ['u', \"-a'\"]",
     ),
     "dry": ARMS_2

@@ -15,6 +15,7 @@ from eomgen.model.forces.gear_mesh import GearMesh
 from eomgen.model.forces.mass_flow import MassFlow
 from eomgen.model.forces.rope import Rope
 from eomgen.model.forces.torsion import TorsionDamper, TorsionSpring
+from eomgen.model.forces.tyre import Tyre
 from eomgen.model.forces.weights import Distributed, Gravity
 
 ALL = (
@@ -40,6 +41,7 @@ ALL = (
     Plate,
     Buoyancy,
     AddedMass,
+    Tyre,
     Potential,
     Kinetic,
     Generalized,
@@ -73,4 +75,5 @@ __all__ = [
     "Spring",
     "TorsionDamper",
     "TorsionSpring",
+    "Tyre",
 ]

@@ -11,17 +11,21 @@ from dataclasses import field
 from typing import Any, ClassVar, Protocol
 
 from eomgen.frozen import dataclass
-from eomgen.model.catalog import Catalog
+from eomgen.model.catalog import Catalog, owner_of
 from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.forces.load import Load, LoadContext, Push, SpreadLoad
 from eomgen.model.kinds import JointFriction
 from eomgen.model.part import MADE, Part
 from eomgen.model.positions import DocumentPath
-from eomgen.symbolic.expression import Expression, Scalar, Vector
+from eomgen.symbolic.expression import Expression, Scalar, Vector, as_expression
 
 # -------- second way ------------------------------------------------------------------------------------------
 # What a force does, in numbers, as its fields declare it: what the proof compares `loads` with. It uses places, twists
 # and masses of a system at a state, and nothing of `loads`.
+
+
+AXES = tuple(tuple(as_expression(str(int(i == k))) for i in range(3)) for k in range(3))
+"""x, y and z as declared vectors."""
 
 
 @dataclass(frozen=True)
@@ -385,3 +389,10 @@ class Force(Part):
     def potential(self, scene: LoadContext) -> Scalar | None:
         """V [J], or None where the force has none."""
         return None
+
+
+def of_a_body(path: DocumentPath, point: Any) -> Iterator[Diagnostic]:
+    """Diagnostics of a point of the ground where one of a body is needed."""
+    if isinstance(point, str) and not owner_of(point):
+        what = f"'{path[1]}' acts at '{point}', which is no point of a body"
+        yield Diagnostic((*path, "point"), what, 'name a point of the body: point = "hull.center"')

@@ -9,11 +9,11 @@ from eomgen.frozen import dataclass
 from eomgen.model.catalog import Catalog, owner_of
 from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.fields import MOTION, TIME, FormulaRule, Leaf, VectorRule
-from eomgen.model.forces.base import Act, Force, ForceTrial
+from eomgen.model.forces.base import AXES, Act, Force, ForceTrial, of_a_body
 from eomgen.model.forces.load import BodyPoint, Load, LoadContext, PointForce
 from eomgen.model.kinds import Direction, PointName, SpaceDirection, VectorFormula
 from eomgen.model.positions import DocumentPath
-from eomgen.symbolic.expression import Expression, Fraction, Scalar, Vector, as_expression, function, over, sqrt
+from eomgen.symbolic.expression import Expression, Fraction, Scalar, Vector, function, over, sqrt
 
 Density = Annotated[Expression, FormulaRule("kg/m^3", "nonnegative")]
 WettedArea = Annotated[Expression, FormulaRule("m^2", "nonnegative")]
@@ -26,7 +26,6 @@ SlowSpeed = Annotated[Expression, FormulaRule("m/s", "positive")]
 Displaced = Annotated[Expression, FormulaRule("m^3", "nonnegative")]
 
 HALF = Fraction(1, 2)
-AXES = tuple(tuple(as_expression(str(int(i == k))) for i in range(3)) for k in range(3))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,13 +58,6 @@ class InFluid(Force):
         """The same in numbers, by the twist."""
         v = here.velocity_of(self.point)
         return v if self.medium is None else v - here.directed(self.medium)
-
-
-def of_a_body(path: DocumentPath, point: Any) -> Iterator[Diagnostic]:
-    """Diagnostics of a point of the ground where one of a body is needed."""
-    if isinstance(point, str) and not owner_of(point):
-        what = f"'{path[1]}' acts at '{point}', which is no point of a body"
-        yield Diagnostic((*path, "point"), what, 'name a point of the body: point = "hull.center"')
 
 
 # -------- drag ------------------------------------------------------------------------------------------------

@@ -1,0 +1,277 @@
+"""Tyres that slip: linear, or by the magic formula, with or without relaxation."""
+
+from collections.abc import Iterator
+from typing import Annotated, Any, ClassVar
+
+from eomgen.frozen import dataclass
+from eomgen.model.catalog import Catalog, owner_of
+from eomgen.model.diagnostics import Diagnostic
+from eomgen.model.fields import MOTION, FormulaRule, VectorRule
+from eomgen.model.forces.base import AXES, Act, Force, ForceTrial, OwnState, of_a_body
+from eomgen.model.forces.load import Couple, Load, LoadContext, PointForce
+from eomgen.model.kinds import Direction, Length, Radius, SpaceDirection, VectorFormula
+from eomgen.model.kinds import PointName as ContactName
+from eomgen.model.part import Part, PartRule
+from eomgen.model.positions import DocumentPath
+from eomgen.symbolic.expression import Expression, Scalar, Vector, as_expression, function, over, sqrt
+
+SlipStiffness = Annotated[Expression, FormulaRule("N", "nonnegative", MOTION)]
+SlipFactor = Annotated[Expression, FormulaRule("1", "", MOTION)]
+Heading = Annotated[VectorFormula, VectorRule(FormulaRule("1", "", MOTION))]
+PeakForce = Annotated[Expression, FormulaRule("N", "", MOTION)]
+RollingSpeed = Annotated[Expression, FormulaRule("m/s", "", MOTION)]
+SmoothSpeed = Annotated[Expression, FormulaRule("m/s", "positive")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class TyreLaw(Part):
+    """The force of a slip s: c s, or D sin(C atan(B s - E (B s - atan(B s)))).
+
+    Args:
+        stiffness: c [N]; it may hold the load.
+        B, C, E: of the magic formula (E left out: 0).
+        D: of it, the largest force [N].
+        relaxation: the way after which a slip has come to 63 % (None: at once) [m].
+    """
+
+    title: ClassVar[str] = "law of a tyre"
+    stiffness: SlipStiffness | None = None
+    B: SlipFactor | None = None
+    C: SlipFactor | None = None
+    D: PeakForce | None = None
+    E: SlipFactor | None = None
+    relaxation: Length | None = None
+
+    def force(self, s: Scalar, value: Any, atan: Any, sin: Any) -> Scalar:
+        """f(s) [N]"""
+        found: Scalar
+        if self.stiffness is not None:
+            found = value(self.stiffness) * s
+            return found
+        x = value(self.B) * s
+        found = value(self.D) * sin(value(self.C) * atan(x - value(self.E) * (x - atan(x))))
+        return found
+
+
+Law = Annotated[TyreLaw, PartRule(TyreLaw)]
+
+
+@dataclass(frozen=True)
+class Rolling:
+    """The contact of a wheel: its directions and velocities, over any scalar.
+
+    Args:
+        ahead, left: unit vectors along the ground, ground axes.
+        arm: from the point to the contact, ground axes [m].
+        travel: velocity of the point ahead [m/s].
+        drift: velocity of the contact to the left [m/s].
+        spin: velocity by which the tread runs faster backwards than the wheel goes ahead [m/s]; None: not known.
+    """
+
+    ahead: Vector
+    left: Vector
+    arm: Vector
+    travel: Any
+    drift: Any
+    spin: Any
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tyre(Force):
+    """A tyre on the ground: the forces of its slip, to the side by tan alpha = v_y/|v_x|, ahead by kappa.
+
+    v_x and v_y are the velocity of the wheel ahead and to the left, and the force to the left is - f(alpha), the one
+    ahead f(kappa), kappa = (r omega - v_x)/|v_x|: both by laws of their own. With a `relaxation` l the slips are states
+    of the model, NAME_slip and NAME_kappa of the tyre NAME: l s' + |v_x| s = v_y, and the same of kappa with
+    r omega - v_x. The wheel is a body that spins, with its `axle` and `radius`, or its place on a body that does not,
+    with a `heading`: in the plane seen from above.
+
+    Args:
+        point: the centre of a wheel with a `radius`, else the place of contact on the body that carries it.
+        lateral: the law of the force to the side, of the angle alpha [rad].
+        longitudinal: the law of the force ahead, of kappa.
+        heading: of a wheel without a radius, in the axes of the body, 2 or 3 (None: its x axis); a
+            steered one is ["cos(delta)", "sin(delta)"].
+        rolling: r omega of it, given, where it has a longitudinal law [m/s].
+        radius: r of a wheel that is a body [m].
+        axle: in space, the axis about which it turns when it goes ahead, in its axes (None: its y axis).
+        up: the normal of the ground (None: z, in the plane y of a wheel with a radius).
+        smooth: v, where |v_x| is sqrt(v_x^2 + v^2): a tyre that comes to rest [m/s].
+    """
+
+    kind: ClassVar[str] = "tyre"
+    point: ContactName
+    lateral: Law | None = None
+    longitudinal: Law | None = None
+    heading: Heading | None = None
+    rolling: RollingSpeed | None = None
+    radius: Radius | None = None
+    axle: SpaceDirection | None = None
+    up: Direction | None = None
+    smooth: SmoothSpeed | None = None
+
+    def diagnostics(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
+        """Diagnostics of a tyre without a law, of laws that are none, of fields for the other way to say the wheel."""
+        yield from of_a_body(path, self.point)
+        for key in ("lateral", "longitudinal"):
+            yield from _of_law((*path, key), getattr(self, key))
+        broken = any((*path, key) in catalog.broken for key in ("lateral", "longitudinal"))
+        if self.lateral is None and self.longitudinal is None and not broken:
+            yield Diagnostic(path, f"the tyre '{path[1]}' has no law", "give 'lateral', 'longitudinal' or both")
+        spins = self.radius is not None
+        for key in ("heading", "rolling") if spins else ("axle",):
+            if getattr(self, key) is not None:
+                has = "a radius" if spins else "no radius"
+                yield Diagnostic((*path, key), f"'{path[1]}' has {has}, and '{key}'", "leave one of them out", key=True)
+        if (
+            not spins
+            and self.longitudinal is not None
+            and self.rolling is None
+            and (*path, "rolling") not in catalog.broken
+        ):
+            what = f"how fast the wheel of '{path[1]}' rolls is not known"
+            yield Diagnostic(path, what, "give 'rolling' [m/s], or the 'radius' of a wheel that is a body")
+        if not spins and self.up is not None and catalog.model.space == "plane":
+            what = f"'{path[1]}' without a radius is seen from above"
+            yield Diagnostic((*path, "up"), what, "leave 'up' out", key=True)
+
+    @property
+    def pushed_points(self) -> tuple[str, ...]:
+        return (self.point,)
+
+    # -- states ----------------------------------------------------------------------------------------------
+
+    @property
+    def own_states(self) -> tuple[OwnState, ...]:
+        relaxes = [law is not None and law.relaxation is not None for law in (self.lateral, self.longitudinal)]
+        known = (OwnState("slip", "1", "lateral slip"), OwnState("kappa", "1", "longitudinal slip"))
+        return tuple(state for state, own in zip(known, relaxes, strict=True) if own)
+
+    def state_rates(self, scene: LoadContext) -> tuple[Scalar, ...]:
+        """(v_y - |v_x| s)/l, (r omega - v_x - |v_x| kappa)/l"""
+        return self._relaxed(self._contact(scene), scene.value, lambda x: sqrt(x))
+
+    def rates(self, here: ForceTrial) -> tuple[Any, ...]:
+        return self._relaxed(self._rolls(here), here.value, lambda x: here.function("sqrt", x))
+
+    def _relaxed(self, wheel: Rolling, value: Any, root: Any) -> tuple[Any, ...]:
+        given = ((self.lateral, "slip", wheel.drift), (self.longitudinal, "kappa", wheel.spin))
+        rows = ((law, self._state(name, value), fed) for law, name, fed in given if law is not None and law.relaxation)
+        speed = self._speed(wheel, value, root)
+        return tuple(over(fed - speed * s, value(law.relaxation)) for law, s, fed in rows)
+
+    def _state(self, name: str, value: Any) -> Any:
+        return value(as_expression(f"{self.name}_{name}"))
+
+    def _speed(self, wheel: Rolling, value: Any, root: Any) -> Any:
+        """|v_x|"""
+        if self.smooth is None:
+            return root(wheel.travel * wheel.travel)
+        v = value(self.smooth)
+        return root(wheel.travel * wheel.travel + v * v)
+
+    # -- force -----------------------------------------------------------------------------------------------
+
+    def loads(self, scene: LoadContext) -> tuple[Load, ...]:
+        """- f(alpha) to the left, f(kappa) ahead, at the contact."""
+        wheel = self._contact(scene)
+        speed = self._speed(wheel, scene.value, lambda x: sqrt(x))
+
+        def atan(x: Scalar) -> Scalar:
+            return function("atan", x)
+
+        def sin(x: Scalar) -> Scalar:
+            return function("sin", x)
+
+        F = Vector.ZERO
+        for law, name, fed in ((self.lateral, "slip", wheel.drift), (self.longitudinal, "kappa", wheel.spin)):
+            if law is None:
+                continue
+            s = self._state(name, scene.value) if law.relaxation is not None else over(fed, speed)
+            lateral = name == "slip"
+            f = law.force(atan(s) if lateral else s, scene.value, atan, sin)
+            F = F - f * wheel.left if lateral else F + f * wheel.ahead
+        place = scene.place(self.point)
+        if self.radius is None:
+            return (PointForce(place, F),)
+        return (PointForce(place, F), Couple(owner_of(self.point), wheel.arm.cross(F), place=place))
+
+    def acts(self, here: ForceTrial) -> Iterator[Act]:
+        """The same in numbers, by the twist of the wheel."""
+        wheel = self._rolls(here)
+        speed = self._speed(wheel, here.value, lambda x: here.function("sqrt", x))
+        push, functions = Vector.ZERO, [lambda x, name=name: here.function(name, x) for name in ("atan", "sin")]
+        if (law := self.lateral) is not None:
+            slip = wheel.drift / speed if law.relaxation is None else self._state("slip", here.value)
+            push = push - law.force(functions[0](slip), here.value, *functions) * wheel.left
+        if (law := self.longitudinal) is not None:
+            kappa = wheel.spin / speed if law.relaxation is None else self._state("kappa", here.value)
+            push = push + law.force(kappa, here.value, *functions) * wheel.ahead
+        yield Act(*here.place(self.point), push, wheel.arm.cross(push))
+
+    # -- contact ---------------------------------------------------------------------------------------------
+
+    def _contact(self, scene: LoadContext) -> Rolling:
+        """Directions and velocities by the rates of the place and the axes."""
+        body, place = owner_of(self.point), scene.place(self.point)
+        R, v = scene.orientation(body), scene.velocity(place)
+        if self.radius is None:
+            ahead = R @ (Vector((1, 0, 0)) if self.heading is None else scene.vector(self.heading))
+            up = Vector((0, 0, 1)) if self.up is None else _unit(scene.vector(self.up))
+            ahead = _unit(ahead - (ahead @ up) * up)
+            left = up.cross(ahead)
+            travel = v @ ahead
+            spin = None if self.rolling is None else scene.value(self.rolling) - travel
+            return Rolling(ahead, left, Vector.ZERO, travel, v @ left, spin)
+        axle = R @ _unit(self._axle(scene))
+        up = scene.vector(self.up) if self.up is not None else Vector((0, 1, 0) if scene.plane else (0, 0, 1))
+        ahead = _unit(axle.cross(up))
+        arm = -scene.value(self.radius) * ahead.cross(axle)
+        treads = v + (R @ scene.spin(body)).cross(arm)
+        left = _unit(up).cross(ahead)
+        return Rolling(ahead, left, arm, v @ ahead, treads @ left, -(treads @ ahead))
+
+    def _axle(self, scene: LoadContext) -> Vector:
+        if scene.plane:
+            return Vector((0, 0, -1))
+        return Vector((0, 1, 0)) if self.axle is None else scene.vector(self.axle)
+
+    def _rolls(self, here: ForceTrial) -> Rolling:
+        """The same in numbers, by the twist."""
+        body, v = owner_of(self.point), here.velocity_of(self.point)
+        axes = [here.directed(axis, body) for axis in AXES]
+        flat = here.plane and self.radius is not None
+        up = here.direction(here.directed(self.up or AXES[1 if flat else 2]))
+        if self.radius is None:
+            nose = axes[0] if self.heading is None else here.directed(self.heading, body)
+            left = here.direction(up.cross(nose))
+            ahead = left.cross(up)
+            rolls = None if self.rolling is None else here.value(self.rolling) - v @ ahead
+            return Rolling(ahead, left, Vector.ZERO, v @ ahead, v @ left, rolls)
+        axle = (
+            -1 * axes[2] if flat else here.direction(axes[1] if self.axle is None else here.directed(self.axle, body))
+        )
+        ahead = here.direction(axle.cross(up))
+        down = here.direction(axle.cross(ahead))
+        arm = here.value(self.radius) * down
+        turn = here.vector(here.in_stream(self.point, None)[1])
+        tread = v + sum((w * e for w, e in zip(turn, axes, strict=True)), start=Vector.ZERO).cross(arm)
+        left = up.cross(ahead)
+        return Rolling(ahead, left, arm, v @ ahead, tread @ left, -(tread @ ahead))
+
+
+def _unit(v: Vector) -> Vector:
+    """v over its length."""
+    size = sqrt(v @ v)
+    return Vector(over(x, size) for x in v)
+
+
+def _of_law(path: DocumentPath, law: TyreLaw | None) -> Iterator[Diagnostic]:
+    """Diagnostics of a law that is both, or neither."""
+    if law is None:
+        return
+    magic = [key for key in "BCDE" if getattr(law, key) is not None]
+    if law.stiffness is not None and magic:
+        yield Diagnostic((*path, magic[0]), "a stiffness and a magic formula", "leave one of them out", key=True)
+    elif law.stiffness is None and not {*"BCD"} <= {*magic}:
+        yield Diagnostic(path, "the law of a tyre has a stiffness, or B, C and D", "give 'stiffness', or these three")
