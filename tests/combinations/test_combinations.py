@@ -97,9 +97,8 @@ def of_law(table: str, law: str) -> compare.Product:
             space=space,
         )
     if table == "STATES":
-        return product(
-            **{"chamber": {"force": "hydraulic"}, "slip": {"force": "tyre_wheel"}}.get(law, {"state": "pushes"})
-        )
+        brought = {"chamber": "hydraulic", "slip": "tyre_wheel"}
+        return product(force=brought[law], space="space") if law in brought else product(state="pushes")
     if table == "FORCES":
         return product(force=UNDER_ANOTHER_NAME.get(law, law), second_force="gravity")
     if table == "MOVING":
