@@ -51,6 +51,7 @@ __all__ = [
 
 UNARY = frozenset("neg sqrt sin cos tan asin acos atan sinh cosh tanh exp log abs sign".split())
 BINARY = frozenset("add sub mul div pow atan2 min max less less_equal sampled".split())
+PI = Fraction(103993, 33102), Fraction(104348, 33215)  # below and above it
 LARGEST_POWER = 4096  # of a node, when it stays a whole power
 _OF_EQUALS = {"min": None, "max": None, "less": 0, "less_equal": 1}  # f(x, x); None: x itself
 
@@ -418,8 +419,19 @@ class Graph:
                     return self.neg(self.call(name, a.args[0]))
                 if name == "cosh":
                     return self.call("cosh", a.args[0])
+            if name in ("sign", "abs") and (sign := self._sign_of_angle(a)):
+                return sign if name == "sign" else sign * a
             return self.held(name, (a,))
         return self._binary(name, *args)
+
+    def _sign_of_angle(self, a: Node) -> int:
+        """The sign of k pi + n of exact numbers k and n; 0 where it is something else, or nearly 0."""
+        terms = linear_terms(a)
+        if not terms or any(atom is not None and atom is not self.pi for atom in terms):
+            return 0
+        k, n = (Fraction(terms.get(atom, 0)) for atom in (self.pi, None))
+        least, most = sorted(k * bound + n for bound in PI)
+        return 1 if least > 0 else -1 if most < 0 else 0
 
     def _wave(self, name: str, a: Scalar) -> Scalar:
         """sin or cos of a; its argument is put in order once."""
