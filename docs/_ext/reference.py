@@ -53,6 +53,7 @@ from eomgen.model.kinds import (  # noqa: E402
     ReactionSymbolsRule,
     Resistance,
     SlideFriction,
+    ThreadFriction,
     TurnFriction,
     Wrap,
 )
@@ -106,6 +107,7 @@ TABLES: Mapping[str, type[Any]] = {
     "friction": Resistance,
     "friction of a hinge": HingeFriction,
     "friction of a slide": SlideFriction,
+    "friction of a thread": ThreadFriction,
     "friction of a turn": TurnFriction,
     "friction of a push": PushFriction,
     "track": Track,

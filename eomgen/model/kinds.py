@@ -235,6 +235,9 @@ FrictionLaw = Annotated[Resistance, PartRule(Resistance)]
 
 TorqueSize = Annotated[Expression, FormulaRule("N*m", "nonnegative", MOTION)]
 ForceSize = Annotated[Expression, FormulaRule("N", "nonnegative", MOTION)]
+TorqueOrCoefficient = Annotated[
+    Expression, FormulaRule(None, "nonnegative", like=("torque", "coefficient"), scope=MOTION)
+]
 TurningSpeed = Annotated[Expression, FormulaRule("rad/s", "positive")]
 SlidingSpeed = Annotated[Expression, FormulaRule("m/s", "positive")]
 
@@ -332,9 +335,29 @@ class HingeFriction(TurnFriction):
     torque: TorqueSize | None = None
     coefficient: Friction | None = None
     radius: Length | None = None
-    static: (
-        Annotated[Expression, FormulaRule(None, "nonnegative", like=("torque", "coefficient"), scope=MOTION)] | None
-    ) = None
+    static: TorqueOrCoefficient | None = None
+    smooth: TurningSpeed | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class ThreadFriction(TurnFriction):
+    """Dry friction of a thread: of a given torque, or mu |N| of the force N of its flanks, along it at its mean radius.
+
+    With the pitch h, tan(alpha) = h/r: a load W along the axis is raised by W r tan(alpha + rho), rho = atan(mu), let
+    down by W r tan(alpha - rho), and held without a torque while tan(alpha) <= mu.
+
+    Args:
+        torque: T while it turns [N m].
+        coefficient: mu, with `radius` in place of `torque`; of flanks at an angle beta mu/cos(beta).
+        radius: r, the mean one of the thread [m].
+        static: the largest at rest, a torque or a coefficient as the other (None: the same).
+        smooth: v of - T tanh(s'/v), at which tanh reaches 76 %; None: it sticks and slips [rad/s].
+    """
+
+    torque: TorqueSize | None = None
+    coefficient: Friction | None = None
+    radius: Length | None = None
+    static: TorqueOrCoefficient | None = None
     smooth: TurningSpeed | None = None
 
 

@@ -138,10 +138,24 @@ class _Seen:
         """Components of the normal force, k x n; none of a joint with friction of constant size."""
         if contact.size is not None:
             return np.zeros((0, len(self.track[0])))
-        if any(c.owner == contact.body and c.label == "n 1" for c in self.model.reactions.components):
+        labels = {c.label for c in self.model.reactions.components if c.owner == contact.body}
+        if "wrench 1" in labels:
+            return self._on_flanks(contact)
+        if "n 1" in labels:
             return self._across(contact)
         across = ("x", "y", "z") if contact.of_joint else ()
         return self._forces(contact, ("n", "n 1", "n 2", "tension", "couple", *across))
+
+    def _on_flanks(self, contact: Contact) -> np.ndarray:
+        """The force of a thread's flanks as it is felt along the axis, 1 x n: all of R along it, less what friction
+        takes of that, h/(r^2 + h^2) of the friction along the angle."""
+        link, value = self.model.system.motion.link(contact.body), self.model.system.scope.value
+        axis = np.array([self._along(x) for x in link.pose.R @ link.S[contact.variable][0]])
+        h, r = (self._along(value(x)) for x in (link.joint.pitch, link.joint.friction.radius))
+        names, found = self._columns
+        R = found[:, [names.index(f"reaction_{k}({contact.body})") for k in "xyz"]].T
+        F = self._forces(contact, ("friction",))[0] if self.model.watch.mode(contact).sense == 0 else 0.0
+        return np.asarray((np.sum(R * axis, axis=0) - F * h / (r * r + h * h))[None, :])
 
     def _across(self, contact: Contact) -> np.ndarray:
         """The size of the force of a slide or path in space across its way, 1 x n: R less its part along."""

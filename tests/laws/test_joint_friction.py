@@ -559,3 +559,42 @@ def test_a_stop_that_is_open_at_the_start_holds_nothing():
     with pytest.raises(eomgen.EomgenError, match=r"'load_low'.* open by 1"):
         eomgen.statics(model)
     assert eomgen.statics(model, start={"y": -3, "phi": -5}).certify().ok
+
+
+SCREW = """
+eomgen = 1
+space = "space"
+parameters = { W = 500, J = 0.02, h = 0.001, r = 0.008, mu = 0.15, M = MOMENT }
+coordinates.q = { start = 0SPEED }
+forces.load = { kind = "force", point = "nut.origin", force = [0, 0, "-W"] }
+outputs = { T = "friction(nut)" }
+[bodies.nut]
+mass = 50
+inertia = ["J", "J", "J"]
+joint = { kind = "screw", angle = "q", pitch = "h", torque = "M", friction = { coefficient = "mu", radius = "r" } }
+"""
+
+
+def screw(M: float, speed: float = 0) -> str:
+    return SCREW.replace("MOMENT", repr(M)).replace("SPEED", f", speed = {speed}")
+
+
+def test_a_screw_raises_lowers_and_holds_by_the_friction_of_its_thread():
+    """W r tan(alpha + rho) raises, W r tan(rho - alpha) lowers; between them it rests, alone while tan(alpha) <= mu."""
+    alpha, rho = math.atan(1 / 8), math.atan(0.15)
+    up, down = (500 * 0.008 * math.tan(rho + sign * alpha) for sign in (1, -1))
+    for M, holds in ((0.999 * up, True), (1.001 * up, False), (-0.999 * down, True), (-1.001 * down, False)):
+        assert (not eomgen.statics(eomgen.loads(screw(M))).broken) == holds
+    text = screw(0).replace(", M = 0", "").replace('torque = "M", ', "")
+    assert [found["condition"] for found in ranges(text)] == ["h/r <= mu"]
+
+
+def test_a_screw_turns_by_the_law_of_its_thread():
+    """J q'' = M - F r tan(alpha + rho), m h q'' = F - W of the whole force F along the axis; then it sticks."""
+    result = run(screw(0, 10), 0.5)
+    k = 0.008 * math.tan(math.atan(1 / 8) + math.atan(0.15))
+    slows = 500 * k / (0.02 + 50 * 0.001 * k)
+    assert senses(result, "nut") == [1, 0]
+    assert result.phases[0].end == pytest.approx(10 / slows)
+    assert result["T"][-1] == pytest.approx(500 * 0.001)
+    assert result.certify().ok

@@ -16,7 +16,7 @@ from eomgen.mechanics.kinematics import (
     ContactModes,
     Motion,
     SystemScene,
-    pushed_along,
+    rubbed_along,
 )
 from eomgen.model import ConstraintRow, Contact, Couple, JointFriction, PointForce, Push
 from eomgen.symbolic.exact import Equality, equal_at_random_states, equal_at_real_states, equal_in_field, readable
@@ -215,17 +215,16 @@ def _held_in_joint(motion: Motion, contact: Contact) -> ConstraintRow:
         pushes = motion.scope.model.forces[contact.name].pushes(SystemScene(motion, f"forces.{contact.name}"))
         return ConstraintRow(pushes, None, component="friction", material=True)
     link = motion.link(contact.body)
-    force, couple = (link.pose.R @ x for x in pushed_along(link, contact.variable, 1))
+    force, couple = (link.pose.R @ x for x in rubbed_along(motion, link, contact.variable))
     places = (
         (link.name, link.point),
         (None if link.parent == GROUND else motion.links[link.parent].name, link.local.p),
     )
-    pushes = ()
+    pushes, on_both = (), tuple(zip(places, (1, -1), strict=True))
     if any(not is_zero(x) for x in force):
-        pushes = tuple(PointForce(place, sign * force) for place, sign in zip(places, (1, -1), strict=True))
-    else:
-        turned = zip(places, (1, -1), strict=True)
-        pushes = tuple(Couple(at[0], sign * couple, place=at) for at, sign in turned if at[0] is not None)
+        pushes = tuple(PointForce(place, sign * force) for place, sign in on_both)
+    if any(not is_zero(x) for x in couple):
+        pushes += tuple(Couple(at[0], sign * couple, place=at) for at, sign in on_both if at[0] is not None)
     label = "friction" if isinstance(contact.friction, JointFriction) else "t"
     return ConstraintRow(pushes, None, component=label, material=True)
 

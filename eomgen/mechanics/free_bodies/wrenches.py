@@ -18,6 +18,7 @@ from eomgen.mechanics.kinematics import (
     JointEffort,
     Motion,
     pushed_along,
+    rubbed_along,
 )
 from eomgen.model import Couple, MassProperties, PointForce
 from eomgen.symbolic.expression import (
@@ -251,8 +252,12 @@ class Component:
     @property
     def unit(self) -> str:
         """Unit of a component: FORCE, or COUPLE if it has no force on any body."""
-        forces = any(not is_zero(x) for effect in self.effects for x in effect.force)
-        return FORCE if forces else COUPLE
+        forces, couples = (
+            any(not is_zero(x) for effect in self.effects for x in part(effect))
+            for part in (lambda effect: effect.force, lambda effect: effect.couple)
+        )
+        along_angle = self.label == "friction" and couples  # of a thread both
+        return FORCE if forces and not along_angle else COUPLE
 
 
 # -- of joints -------------------------------------------------------------------------------------
@@ -267,7 +272,7 @@ def _joint_components(system: System, axes: Axes) -> list[Component]:
             continue
         pushes = _basis(axes, link, system)
         factor = joint_friction(system, link)
-        along = () if factor is None else tuple(effects_at_joint(axes, link, *pushed_along(link, 0, 1)))
+        along = () if factor is None else tuple(effects_at_joint(axes, link, *rubbed_along(axes.motion, link, 0)))
         whole = factor is not None and is_of_whole_force(axes.motion, link)
         for number, (label, force, couple) in enumerate(pushes, start=1):
             effects = tuple(effects_at_joint(axes, link, force, couple))
@@ -455,8 +460,9 @@ def normals_of_round(components: Sequence[Component], friction: Component) -> tu
 
 
 def normals_of_joint(components: Sequence[Component], body: str) -> tuple[int, ...]:
-    """Indices of the forces of a joint, across a slide or path, of a hinge all of them."""
-    labels = ("n", "n 1", "n 2", "x", "y", "z")
+    """Indices of the forces of a joint, across a slide or path, of a hinge all of them; of a thread that of it."""
+    threaded = any((c.kind, c.owner, c.label) == ("joint", body, "wrench 1") for c in components)
+    labels = ("wrench 1",) if threaded else ("n", "n 1", "n 2", "x", "y", "z")
     return tuple(j for j, c in enumerate(components) if (c.kind, c.owner) == ("joint", body) and c.label in labels)
 
 

@@ -427,9 +427,13 @@ def _conditions(system: System) -> Iterator[StickCondition]:
         except DerivationError:  # it has no single value
             continue
         assert contact.grip is not None, "what is rough can stick"
-        most = ContactMode.size_of(system.scope, contact.grip)
-        ratio = simplest(F if N is None else over(F, N), Work.ANSWER, positive)
-        force = most if N is None else most * function("abs", N)
+        most = largest = ContactMode.size_of(system.scope, contact.grip)
+        whole = F if N is None else over(F, N)
+        if contact.kind == "screw" and N is not None:  # of a thread h/r <= mu
+            arm = system.scope.value(contact.friction.radius)
+            whole, most = over(whole, arm), over(most, arm)
+        ratio = simplest(whole, Work.ANSWER, positive)
+        force = largest if N is None else largest * function("abs", N)
         words = _of_sides(reactions, contact) if contact.pulls else ""
         yield StickCondition(contact.name, ratio, most, force, words)
 

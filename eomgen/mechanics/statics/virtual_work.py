@@ -375,10 +375,12 @@ class StaticReactions:
     def _of_joint(self, contact: Contact) -> list[RestCondition]:
         """Condition for a joint with dry friction to stick, where its reactions are determinate."""
         along = _value(self, f"friction({contact.name})")
-        across = [_value(self, f"reaction_{k}({contact.body})") for k in ("n", "x", "y", "z")]
-        N: Scalar | None = 1 if contact.size is not None else _resultant([x for x in across if x is not None] or [None])
-        if contact.kind == "prismatic" and across[0] is None and N is not None and along is not None:
-            N = sqrt(N * N - along * along)  # in space the force is all that the joint carries
+        N: Scalar | None = 1
+        if contact.size is None:
+            try:
+                N = _resultant([self.balance.value(j) for j in self.balance.of_joint(contact.body)] or [None])
+            except Indeterminate:
+                N = None
         if along is None or N is None or contact.grip is None:
             return []
         pressed = simplest(N, Work.ANSWER, self.system.scope.positive)

@@ -21,6 +21,7 @@ from eomgen.model.kinds import (
     PushFriction,
     SlidingSpeed,
     SpaceDirection,
+    TorqueOrCoefficient,
     TorqueSize,
     TurnFriction,
     TurningSpeed,
@@ -33,9 +34,6 @@ from eomgen.symbolic.expression import Expression, Fraction, Vector, as_expressi
 Faces = Annotated[Expression, FormulaRule("1", "positive")]
 AnySpeed = Annotated[Expression, FormulaRule(None, "positive")]
 Radii = Annotated[tuple[Expression, ...], ListRule(FormulaRule("m", "positive"), 2, 2)]
-TorqueOrCoefficient = Annotated[
-    Expression, FormulaRule(None, "nonnegative", like=("torque", "coefficient"), scope=MOTION)
-]
 AnySizeOrCoefficient = Annotated[
     Expression, FormulaRule(None, "nonnegative", like=("torque", "force", "coefficient"), scope=MOTION)
 ]

@@ -34,6 +34,7 @@ from eomgen.model.kinds import (
     Displacement,
     ForceFormula,
     HingeFriction,
+    JointFriction,
     LinearDamping,
     LinearStiffness,
     RestAngle,
@@ -47,8 +48,8 @@ from eomgen.model.kinds import (
     SlideLimits,
     SlideStop,
     SpaceDirection,
+    ThreadFriction,
     Torque,
-    TurnFriction,
     TurnStop,
     ValueOf,
 )
@@ -375,7 +376,7 @@ class Screw(AxisJoint):
         limits: [least, largest] of the angle, "inf" for none: rigid stops, in the unit of its coordinate.
         restitution: of the stops: with this share of its speed it rebounds, 0 to 1 (None: not at all).
         stop: instead of rigid ones stops that yield: { stiffness = k, damping = d } pushes back beyond the limits.
-        friction: dry: { torque = T }; `static`, the largest at rest; or `smooth`.
+        friction: dry: { torque = T } or { coefficient = mu, radius = r }; `static`, the largest at rest; or `smooth`.
     """
 
     limited: ClassVar[tuple[str, ...]] = ("angle",)
@@ -393,7 +394,16 @@ class Screw(AxisJoint):
     limits: AngleLimits | None = None
     restitution: Restitution | None = None
     stop: Annotated[TurnStop, PartRule(TurnStop)] | None = None
-    friction: Annotated[TurnFriction, PartRule(TurnFriction)] | None = None
+    friction: Annotated[ThreadFriction, PartRule(ThreadFriction)] | None = None
+
+    @property
+    def frictions(self) -> tuple[tuple[int, str, JointFriction], ...]:
+        """The friction of the thread: of a unit of the flanks' force along the axis, mu (r + h^2/r) along the angle."""
+        law = self.friction
+        if law is None or law.radius is None:
+            return () if law is None else ((0, "angle", law),)
+        r, h = law.radius.text, self.pitch.text
+        return ((0, "angle", law.altered(radius=as_expression(f"{r} + ({h})^2/({r})"))),)
 
     def turns(self) -> tuple[Expression, ...]:
         return (self.angle,)
