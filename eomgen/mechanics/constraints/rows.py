@@ -16,7 +16,6 @@ from eomgen.mechanics.kinematics import (
     ContactModes,
     Motion,
     SystemScene,
-    rubbed_along,
 )
 from eomgen.model import ConstraintRow, Contact, Couple, JointFriction, PointForce, Push
 from eomgen.symbolic.exact import Equality, equal_at_random_states, equal_at_real_states, equal_in_field, readable
@@ -215,7 +214,7 @@ def _held_in_joint(motion: Motion, contact: Contact) -> ConstraintRow:
         pushes = motion.scope.model.forces[contact.name].pushes(SystemScene(motion, f"forces.{contact.name}"))
         return ConstraintRow(pushes, None, component="friction", material=True)
     link = motion.link(contact.body)
-    force, couple = (link.pose.R @ x for x in rubbed_along(motion, link, contact.variable))
+    force, couple = (link.pose.R @ x for x in ContactMode.rubbed_along(motion, link, contact.variable))
     places = (
         (link.name, link.point),
         (None if link.parent == GROUND else motion.links[link.parent].name, link.local.p),

@@ -18,7 +18,6 @@ from eomgen.mechanics.kinematics import (
     JointEffort,
     Motion,
     pushed_along,
-    rubbed_along,
 )
 from eomgen.model import Couple, MassProperties, PointForce
 from eomgen.symbolic.expression import (
@@ -272,7 +271,11 @@ def _joint_components(system: System, axes: Axes) -> list[Component]:
             continue
         pushes = _basis(axes, link, system)
         factor = joint_friction(system, link)
-        along = () if factor is None else tuple(effects_at_joint(axes, link, *rubbed_along(axes.motion, link, 0)))
+        along = (
+            ()
+            if factor is None
+            else tuple(effects_at_joint(axes, link, *ContactMode.rubbed_along(axes.motion, link, 0)))
+        )
         whole = factor is not None and is_of_whole_force(axes.motion, link)
         for number, (label, force, couple) in enumerate(pushes, start=1):
             effects = tuple(effects_at_joint(axes, link, force, couple))

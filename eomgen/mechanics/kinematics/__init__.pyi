@@ -47,9 +47,6 @@ from eomgen.mechanics.kinematics.scene import SystemScene as SystemScene
 # Force and couple along a joint's variable that do the work of a magnitude times its rate
 from eomgen.mechanics.kinematics.scene import pushed_along as pushed_along
 
-# Force and couple of a unit of friction along a joint's variable, of a thread along that
-from eomgen.mechanics.kinematics.scene import rubbed_along as rubbed_along
-
 # The symbols of a model and its kinematic equations
 from eomgen.mechanics.kinematics.symbols import Scope as Scope
 

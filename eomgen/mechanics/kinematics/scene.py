@@ -57,20 +57,6 @@ def pushed_along(link: BodyLink, variable: int, magnitude: Scalar) -> tuple[Vect
     return (Vector.ZERO, push) if turning else (push, Vector.ZERO)
 
 
-def rubbed_along(motion: Motion, link: BodyLink, variable: int) -> tuple[Vector, Vector]:
-    """(force, couple) of the friction along a joint's variable that does the work s', child's axes.
-
-    Of a thread it is along that at its mean radius r: r^2 n/(r^2 + h^2) of the couple, h n/(r^2 + h^2) of the force.
-    """
-    radius = getattr(getattr(link.joint, "friction", None), "radius", None)
-    w, v = link.S[variable]
-    if radius is None or all(map(is_zero, v)):
-        return pushed_along(link, variable, 1)
-    r = motion.scope.value(radius)
-    square = r * r + v @ v
-    return over(1, square) * v, over(r * r, square) * w
-
-
 def _without_work(magnitude: Scalar, n: Vector, others: Sequence[Vector]) -> Vector:
     """The vector d in the span of n and the others with d . n = magnitude that is normal to the others."""
     if all(is_zero(n @ other) for other in others):
@@ -368,6 +354,20 @@ class ContactMode:
             return None
         sense = function("sign", sliding) if self.sense is None else self.sense
         return -self.push * value(law.coulomb) * sense
+
+    @staticmethod
+    def rubbed_along(motion: Motion, link: BodyLink, variable: int) -> tuple[Vector, Vector]:
+        """(force, couple) of the friction along a joint's variable that does the work s', child's axes.
+
+        Of a thread it is along that at its mean radius r: r^2 n/(r^2 + h^2) of the couple, h n/(r^2 + h^2) of the force.
+        """
+        radius = getattr(getattr(link.joint, "friction", None), "radius", None)
+        w, v = link.S[variable]
+        if radius is None or all(map(is_zero, v)):
+            return pushed_along(link, variable, 1)
+        r = motion.scope.value(radius)
+        square = r * r + v @ v
+        return over(1, square) * v, over(r * r, square) * w
 
     @staticmethod
     def size_of(scope: Scope, size: Expression) -> Scalar:
