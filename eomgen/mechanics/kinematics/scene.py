@@ -359,7 +359,7 @@ class ContactMode:
     def rubbed_along(motion: Motion, link: BodyLink, variable: int) -> tuple[Vector, Vector]:
         """(force, couple) of the friction along a joint's variable that does the work s', child's axes.
 
-        Of a thread it is along that at its mean radius r: r^2 n/(r^2 + h^2) of the couple, h n/(r^2 + h^2) of the force.
+        Of a thread it is along that at its mean radius r: a couple r^2 n/(r^2 + h^2) and a force h n/(r^2 + h^2).
         """
         radius = getattr(getattr(link.joint, "friction", None), "radius", None)
         w, v = link.S[variable]
