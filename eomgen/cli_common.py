@@ -501,9 +501,9 @@ def reading(path: str) -> Iterator[Source]:
 
 def _followed(declared: Model, follow: tuple[str, ...]) -> Model:
     """The model, coordinates and inputs through the samples of files."""
-    from eomgen.model import following
+    from eomgen.model import Requests
 
-    return following(declared, follow) if follow else declared
+    return Requests(declared).following(follow) if follow else declared
 
 
 def write_requested(

@@ -12,7 +12,7 @@ from eomgen.errors import UsageError
 from eomgen.frozen import recalled
 from eomgen.mechanics.dynamics import METHODS
 from eomgen.mechanics.kinematics import ContactModes
-from eomgen.model import ModelOrPath, Typed, Values, WrittenEquation, with_inputs
+from eomgen.model import ModelOrPath, Requests, Typed, Values, WrittenEquation
 from eomgen.resources import doing, growing
 from eomgen.study import InverseDynamics, Study, model_to_study, study_of, study_of_modes
 from eomgen.symbolic.numeric import tolerances
@@ -166,7 +166,9 @@ def simulate(
 
     model = model_to_study(model, parameters, start)
     controllers = controllers_of(model, inputs or {})
-    model = with_inputs(model, {name: value for name, value in (inputs or {}).items() if name not in controllers})
+    model = Requests(model).with_inputs(
+        {name: value for name, value in (inputs or {}).items() if name not in controllers}
+    )
     if controllers:
         from eomgen.simulation import Stepping
 

@@ -10,7 +10,7 @@ from scipy.linalg import expm, solve_continuous_are
 
 import eomgen
 from eomgen.errors import NotYet, UsageError
-from eomgen.model.replaced import with_inputs
+from eomgen.model.replaced import Requests
 
 MODELS = Path(__file__).parents[1] / "models"
 SLIDE = """
@@ -47,12 +47,12 @@ def test_a_law_of_the_state_is_part_of_the_equations(pole, gains):
     """A_closed = A - B K; the pole stands; the run is proven, reactions and outputs follow the law."""
     law = law_of_gains(gains)
     small = eomgen.linearize(pole)
-    closed = eomgen.linearize(with_inputs(pole, {"F": law}))
+    closed = eomgen.linearize(Requests(pole).with_inputs({"F": law}))
     wanted = np.linalg.eigvals(small.A - small.B @ gains[None, :])
     assert np.sort_complex(np.linalg.eigvals(closed.A)) == pytest.approx(np.sort_complex(wanted), rel=1e-8)
     run = eomgen.simulate(pole, time=12, samples=25, inputs={"F": law})
     assert abs(run["theta"][-1]) < 1e-4 and run.certify().ok
-    assert run["hinge_x"][0] == pytest.approx(eomgen.solve(with_inputs(pole, {"F": law}))["hinge_x"].value)
+    assert run["hinge_x"][0] == pytest.approx(eomgen.solve(Requests(pole).with_inputs({"F": law}))["hinge_x"].value)
 
 
 @pytest.mark.slow

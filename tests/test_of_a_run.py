@@ -15,7 +15,7 @@ from scipy.special import ellipj, ellipk
 import eomgen
 from eomgen.cli import main
 from eomgen.errors import UsageError
-from eomgen.model import requested_of
+from eomgen.model import Requests
 from eomgen.model.fields import Table
 from eomgen.proof.runs import SamplesOfRun
 from eomgen.simulation.event_location import ChebyshevPieces, resolved_curve
@@ -226,11 +226,11 @@ def test_what_is_told_of_a_run_is_held_against_its_samples(swing):
     found, samples = swing.proof.whole, SamplesOfRun(swing.proof.whole)
     model = eomgen.loads(PENDULUM)
     for text in ("q at t = 1", "q' at q = 0, event 2", "max(q')", "q + 1", "q at t = 20", "q' at q = 0, event 40"):
-        requested = requested_of(model, text)
+        requested = Requests(model).output(text)
         assert samples.answered_otherwise(requested, found.of(requested).value) == ""
-    at = requested_of(model, "q at t = 1")
+    at = Requests(model).output("q at t = 1")
     assert "it is not 1.9" in samples.answered_otherwise(at, 1.9)
     assert "no value, and it is met near t = 1" in samples.answered_otherwise(at, None)
-    assert "2" in samples.answered_otherwise(requested_of(model, "q"), 2.1)
-    later = replace(found.of(requested_of(model, "q' at q = 0, event 3")))
-    assert samples.answered_otherwise(requested_of(model, "q' at q = 0, event 2"), later.value)
+    assert "2" in samples.answered_otherwise(Requests(model).output("q"), 2.1)
+    later = replace(found.of(Requests(model).output("q' at q = 0, event 3")))
+    assert samples.answered_otherwise(Requests(model).output("q' at q = 0, event 2"), later.value)

@@ -20,7 +20,7 @@ from eomgen.cli import main
 from eomgen.codegen.build import compiler
 from eomgen.errors import ModelError, UsageError
 from eomgen.model.likely_mistakes import warnings_of
-from eomgen.model.replaced import following
+from eomgen.model.replaced import Requests
 from eomgen.model.sampled_laws import samples
 from eomgen.simulation.solvers import METHODS
 from eomgen.symbolic.expression.graph import Graph
@@ -246,7 +246,7 @@ def test_a_run_drives_the_next_one(tmp_path):
     run = eomgen.simulate(arm("0.3"), time=1, samples=401)
     path = tmp_path / "run.csv"
     run.to_csv(path)
-    again = eomgen.simulate(following(arm("0.3"), [f"theta={path}"]), time=1, samples=41)
+    again = eomgen.simulate(Requests(arm("0.3")).following([f"theta={path}"]), time=1, samples=41)
     assert np.abs(again["theta"] - run["theta"][::10]).max() < 1e-7
     assert np.abs(again["drive(theta)"][2:-2]).max() < 1e-3
 
@@ -267,7 +267,7 @@ def test_a_file_without_samples_is_refused(tmp_path, text, what):
     path = tmp_path / "given.csv"
     path.write_text(text)
     with pytest.raises(UsageError, match=what):
-        following(arm("0.3"), [f"theta={path}"])
+        Requests(arm("0.3")).following([f"theta={path}"])
 
 
 @each(

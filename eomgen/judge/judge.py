@@ -82,7 +82,7 @@ from eomgen.judge.verdict import (
     kind_of_equation,
 )
 from eomgen.judge.written_pages import equations_in, matrix_of, without_first
-from eomgen.model import AtRest, ModelOrPath, equation_in
+from eomgen.model import AtRest, ModelOrPath, Requests
 from eomgen.proof import JudgedEquation
 from eomgen.resources import doing
 from eomgen.study import model_to_study
@@ -678,6 +678,6 @@ def _instant(case: Case, at: Any) -> Instant:
     if str(at).strip() == AtRest.text:
         return AtRest()
     try:
-        return equation_in(case.model, str(at))
+        return Requests(case.model).equation(str(at))
     except ExpressionError as error:
         raise UsageError(f"at {at}: {error.what}", fix=error.fix or 'write "theta = pi/2"') from error

@@ -206,6 +206,9 @@ from eomgen.model.reader import warned as warned
 # Values that a parameter or start takes one after the other
 from eomgen.model.replaced import Range as Range
 
+# Reader of what is requested of a model by texts, or by values in Python
+from eomgen.model.replaced import Requests as Requests
+
 # The interpretation of something that was typed
 from eomgen.model.replaced import Taken as Taken
 
@@ -222,38 +225,11 @@ from eomgen.model.replaced import are_several as are_several
 # (name, text) of each NAME=VALUE
 from eomgen.model.replaced import assignments as assignments
 
-# The equation of a text that a person typed, in SI; one that is written already stays as it is
-from eomgen.model.replaced import equation_in as equation_in
-
-# An equation that a person typed, in SI, and what was taken of it
-from eomgen.model.replaced import equation_typed as equation_typed
-
-# The model with coordinates and inputs that follow files: a coordinate in the way it was driven, else by `motion`
-from eomgen.model.replaced import following as following
-
-# Refuses a name of what takes no values
-from eomgen.model.replaced import refuse_what_is_not_set as refuse_what_is_not_set
-
-# Output requested by a text
-from eomgen.model.replaced import requested_of as requested_of
-
-# Request whose plain numbers of the instant have the units of the model file, and these readings
-from eomgen.model.replaced import requested_typed as requested_typed
-
-# A function of time that is given in Python: a number in SI or with a unit, an expression, samples [SI]
-from eomgen.model.replaced import time_law as time_law
-
 # The values of what is given in Python: one, several, an array with its unit, an array of pint's
 from eomgen.model.replaced import typed_values as typed_values
 
-# The model with other values of inputs: numbers in SI or with a unit, expressions of t and the parameters
-from eomgen.model.replaced import with_inputs as with_inputs
-
 # The model in which what only constraints can hold has displacements; the other bodies keep their joints
 from eomgen.model.restated import freed as freed
-
-# A law of the state: an expression with coordinates, rates or speeds in it; None for everything else
-from eomgen.model.restated import law_of as law_of
 
 # A function of time through samples, for `motion`, `rate`, `acceleration` or an input; arrays are welcome
 from eomgen.model.sampled_laws import samples as samples

@@ -28,10 +28,10 @@ from eomgen.model.fields import EVERY, AtRest, Table, WrittenEquation, is_mixed
 from eomgen.model.model import Model
 from eomgen.model.parts import Coordinate, Output
 from eomgen.model.quantities import Typed, Unit, parse_typed_equation
-from eomgen.model.restated import law_of, with_feedback
+from eomgen.model.restated import with_feedback
 from eomgen.model.sampled_laws import TimeLawRule, samples
 from eomgen.model.units import Settled, Typing, shown
-from eomgen.symbolic.expression import Expression, parse
+from eomgen.symbolic.expression import Expression, as_expression, parse
 
 Values = Mapping[str, Typed]
 
@@ -216,28 +216,6 @@ def assignments(given: Iterable[str], example: str) -> list[tuple[str, str]]:
     return pairs
 
 
-def equation_typed(model: Model, text: str, *, declared: bool = False) -> tuple[WrittenEquation, tuple[Taken, ...]]:
-    """An equation that a person typed, in SI, and what was taken of it.
-
-    Args:
-        declared: as of Typing.
-    Raises:
-        ExpressionError: it is none, or a unit does not fit.
-    """
-    (left, one), (right, other) = parse_typed_equation(text)
-    equation, settled = Typing(model, declared).equation(WrittenEquation(left, right, text, (one, other)))
-    return equation, tuple(taken_of(model, each) for each in settled)
-
-
-def equation_in(model: Model, text: WrittenEquation | str) -> WrittenEquation:
-    """The equation of a text that a person typed, in SI; one that is written already stays as it is.
-
-    Raises:
-        ExpressionError: it is none, or a unit does not fit.
-    """
-    return text if isinstance(text, WrittenEquation) else equation_typed(model, text)[0]
-
-
 def _refuse_given(model: Model, name: str, option: str) -> None:
     """Refuses a start of what is none, or of what the model drives.
 
@@ -257,50 +235,185 @@ def _refuse_given(model: Model, name: str, option: str) -> None:
         raise UsageError(f"{option}: '{name}' starts where its `{way}` says", fix="give no other start")
 
 
-def time_law(model: Model, name: str, value: Any, option: str) -> Expression:
-    """A function of time that is given in Python: a number in SI or with a unit, an expression, samples [SI].
-
-    Args:
-        name: whose value it is; option: what messages call it.
-    Raises:
-        UsageError: it is none, or its unit does not fit.
-    """
-    if isinstance(value, Mapping):
-        found: list[Diagnostic] = []
-        law: Expression | None = TimeLawRule().read(value, (option, name), found)
-        if law is None or found:
-            raise UsageError(f"{option}: {name}: {found[0].what}", fix=found[0].fix)
-        return law
-    if isinstance(value, Expression):
-        return value
-    return _settled(Typing(model, declared=False), name, value, option).value
-
-
 def _near(name: str, names: Iterable[str]) -> str:
     return nearest(name, names) or f"there are {', '.join(names) or 'none'}"
 
 
-def with_inputs(model: Model, inputs: Mapping[str, Any]) -> Model:
-    """The model with other values of inputs: numbers in SI or with a unit, expressions of t and the parameters,
-    `samples(...)`, or laws of the state ("-k*x - c*x'"), which then stand in place of the input.
+# -------- requests --------------------------------------------------------------------------------------------
+# Texts and values that somebody typed beside a model: equations, outputs, laws of inputs, samples that are followed.
 
-    Raises:
-        UsageError: no input of that name, a value that is none, a unit that does not fit; or a Python function, which
-            nothing can differentiate or emit.
-    """
-    for name, value in inputs.items():
-        if name not in model.inputs:
-            raise UsageError(f"there is no input '{name}'", fix=nearest(name, model.inputs))
-        if callable(value):
-            what = f"input '{name}' is given by a Python function"
-            raise UsageError(what, fix="give an expression of t or the state, or eomgen.samples(times, values)")
-    laws = {name: law for name, value in inputs.items() if (law := law_of(model, value)) is not None}
-    values = {name: time_law(model, name, value, "inputs") for name, value in inputs.items() if name not in laws}
-    changed = {name: _with_value(model.inputs[name], "value", value) for name, value in values.items()}
-    made = model.altered(inputs=Table({**model.inputs, **changed})) if changed else model
-    if changed:
-        replace(model, inputs=made.inputs)  # what is wrong with a model is wrong with this one
-    return with_feedback(made, laws)
+
+@dataclass(frozen=True)
+class Requests:
+    """Reader of what is requested of a model by texts, or by values in Python."""
+
+    model: Model
+
+    def equation(self, text: WrittenEquation | str) -> WrittenEquation:
+        """The equation of a text that a person typed, in SI; one that is written already stays as it is.
+
+        Raises:
+            ExpressionError: it is none, or a unit does not fit.
+        """
+        return text if isinstance(text, WrittenEquation) else self.equation_taken(text)[0]
+
+    def equation_taken(self, text: str, *, declared: bool = False) -> tuple[WrittenEquation, tuple[Taken, ...]]:
+        """An equation that a person typed, in SI, and what was taken of it.
+
+        Args:
+            declared: as of Typing.
+        Raises:
+            ExpressionError: it is none, or a unit does not fit.
+        """
+        (left, one), (right, other) = parse_typed_equation(text)
+        equation, settled = Typing(self.model, declared).equation(WrittenEquation(left, right, text, (one, other)))
+        return equation, tuple(taken_of(self.model, each) for each in settled)
+
+    def output(self, text: str) -> Output:
+        """Output that a text requests: an output's name, a formula, "FORMULA at EQUATION" with ", event 2" or "every".
+
+        In a formula the name of an output without an instant stands for its formula.
+
+        Raises:
+            UsageError: the text cannot be read, or a name in it is unknown.
+        """
+        if text in self.model.outputs:
+            return self.model.outputs[text]
+        formula, at, condition = text.partition(" at ")
+        condition, comma, event = condition.partition(", event")
+        try:
+            written = _in_full(self.model, formula.strip())
+            output = Output(value=parse(written, references=True, tables=self.model.functions))
+            if at:
+                when: Any = AtRest() if condition.strip() == AtRest.text else self.equation(condition.strip())
+                output = replace(output, at=when)
+            if comma:
+                output = replace(output, event=EVERY if event.strip() == EVERY else int(event))
+            self.model.requesting({"asked": output})
+        except ValueError as error:
+            raise UsageError(f"'{text}': '{event.strip()}' is no number of an event", fix=f"2, or {EVERY}") from error
+        except ExpressionError as error:
+            raise UsageError(f"'{text}': {error.what}", fix=error.fix) from error
+        except ModelError as error:
+            raise UsageError(f"'{text}': {error.problems[0].what}", fix=error.problems[0].fix) from error
+        return output
+
+    def output_taken(self, text: str) -> tuple[str, tuple[Taken, ...]]:
+        """Request whose plain numbers of the instant have the units of the model file, and these readings.
+
+        Raises:
+            UsageError: the instant cannot be read, or a unit does not fit.
+        """
+        formula, at, rest = text.partition(" at ")
+        condition, comma, event = rest.partition(", event")
+        if text in self.model.outputs or not at or condition.strip() == AtRest.text:
+            return text, ()
+        try:
+            sides = parse_typed_equation(condition)
+            _, taken = self.equation_taken(condition, declared=True)
+        except ExpressionError as error:
+            raise UsageError(f"'{text}': {error.what}", fix=error.fix) from error
+        units = {each.typed: each.unit for each in taken}
+        own = ((side.text, units.get(side.text, "") if unit is None else unit.text) for side, unit in sides)
+        written = (f"{number} {unit}".strip() for number, unit in own)
+        return f"{formula} at {' = '.join(written)}{comma}{event}", taken
+
+    def law(self, name: str, value: Any, option: str) -> Expression:
+        """A function of time that is given in Python: a number in SI or with a unit, an expression, samples [SI].
+
+        Args:
+            name: whose value it is; option: what messages call it.
+        Raises:
+            UsageError: it is none, or its unit does not fit.
+        """
+        if isinstance(value, Mapping):
+            found: list[Diagnostic] = []
+            law: Expression | None = TimeLawRule().read(value, (option, name), found)
+            if law is None or found:
+                raise UsageError(f"{option}: {name}: {found[0].what}", fix=found[0].fix)
+            return law
+        if isinstance(value, Expression):
+            return value
+        return _settled(Typing(self.model, declared=False), name, value, option).value
+
+    def with_inputs(self, inputs: Mapping[str, Any]) -> Model:
+        """The model with other values of inputs: numbers in SI or with a unit, expressions of t and the parameters,
+        `samples(...)`, or laws of the state ("-k*x - c*x'"), which then stand in place of the input.
+
+        Raises:
+            UsageError: no input of that name, a value that is none, a unit that does not fit; or a Python function,
+                which nothing can differentiate or emit.
+        """
+        for name, value in inputs.items():
+            if name not in self.model.inputs:
+                raise UsageError(f"there is no input '{name}'", fix=nearest(name, self.model.inputs))
+            if callable(value):
+                what = f"input '{name}' is given by a Python function"
+                raise UsageError(what, fix="give an expression of t or the state, or eomgen.samples(times, values)")
+        laws = {name: law for name, value in inputs.items() if (law := self.feedback(value)) is not None}
+        values = {name: self.law(name, value, "inputs") for name, value in inputs.items() if name not in laws}
+        changed = {name: _with_value(self.model.inputs[name], "value", value) for name, value in values.items()}
+        made = self.model.altered(inputs=Table({**self.model.inputs, **changed})) if changed else self.model
+        if changed:
+            replace(self.model, inputs=made.inputs)  # what is wrong with a model is wrong with this one
+        return with_feedback(made, laws)
+
+    def following(self, given: Sequence[str]) -> Model:
+        """The model with coordinates and inputs that follow files: a coordinate as it was driven, or by `motion`.
+
+        Args:
+            given: NAME=FILE each; a CSV with the times in its first column and the values, in SI, in the column NAME,
+                or in its second.
+        Raises:
+            UsageError: no coordinate or input of that name, one that cannot be driven, or a file without samples.
+        """
+        coordinates, inputs = dict(self.model.coordinates), dict(self.model.inputs)
+        for name, path in assignments(given, FOLLOW):
+            if name in inputs:
+                inputs[name] = inputs[name].altered(value=_samples_of(path, name))
+            elif name in coordinates:
+                coordinates[name] = _driven(coordinates[name], name, _samples_of(path, name))
+            else:
+                fix = _named(name, [*coordinates, *inputs])
+                raise UsageError(f"--follow: there is no coordinate or input '{name}'", fix=fix)
+        changes: dict[str, Any] = {"coordinates": Table(coordinates), "inputs": Table(inputs)}
+        try:
+            replace(self.model, **changes)  # what is wrong with a model is wrong with this one
+        except ModelError as error:
+            raise UsageError(f"--follow: {error.problems[0].what}", fix=error.problems[0].fix) from error
+        followed: Model = self.model.altered(**changes)
+        return followed
+
+    def refuse_what_is_not_set(self, name: str, *, starts: bool) -> None:
+        """Refuses a name of what takes no values.
+
+        Args:
+            starts: coordinates, rates and speeds may, too.
+        Raises:
+            UsageError: it is named.
+        """
+        known = [*self.model.parameters, *(self._moving if starts else ())]
+        if name not in known:
+            what = f"no parameter '{name}'" if not starts else f"no parameter, coordinate, rate or speed '{name}'"
+            raise UsageError(what, fix=nearest(name, known) or Range.LIKE)
+        if name in self.model.counts:
+            raise UsageError(f"'{name}' counts things of the model: it has one value", fix=f"set it: {name}=5")
+
+    def feedback(self, value: Any) -> Expression | None:
+        """A law of the state: an expression with coordinates, rates or speeds in it; None for everything else."""
+        if not isinstance(value, (str, Expression)):
+            return None
+        try:
+            law = as_expression(value)
+        except ExpressionError:
+            return None  # reported where it is read as an input
+        return law if law.names & {*self._moving} else None
+
+    @property
+    def _moving(self) -> tuple[str, ...]:
+        """Names of coordinates, rates, speeds and states."""
+        model = self.model
+        return (*model.coordinates, *(f"{q}'" for q in model.coordinates), *model.speeds, *model.states)
 
 
 # -------- ranges ----------------------------------------------------------------------------------------------
@@ -344,7 +457,7 @@ class Range:
         name = name.strip()
         if not equals:
             raise UsageError(f"'{text}' is no range", fix=Range.LIKE)
-        refuse_what_is_not_set(model, name, starts=starts)
+        Requests(model).refuse_what_is_not_set(name, starts=starts)
         typed = TypedNumbers(model, name, declared)
         try:
             values = _values(rest, logarithmic, text, typed.number)
@@ -429,23 +542,6 @@ def are_several(given: Any) -> bool:
     return isinstance(given, list) or np.ndim(getattr(given, "magnitude", given)) == 1
 
 
-def refuse_what_is_not_set(model: Model, name: str, *, starts: bool) -> None:
-    """Refuses a name of what takes no values.
-
-    Args:
-        starts: coordinates, rates and speeds may, too.
-    Raises:
-        UsageError: it is named.
-    """
-    moving = [*model.coordinates, *(f"{q}'" for q in model.coordinates), *model.speeds, *model.states] if starts else []
-    known = [*model.parameters, *moving]
-    if name not in known:
-        what = f"no parameter '{name}'" if not starts else f"no parameter, coordinate, rate or speed '{name}'"
-        raise UsageError(what, fix=nearest(name, known) or Range.LIKE)
-    if name in model.counts:
-        raise UsageError(f"'{name}' counts things of the model: it has one value", fix=f"set it: {name}=5")
-
-
 def _taken(typed: TypedNumbers, rest: str, logarithmic: bool) -> Taken:
     ends = rest.split(":")
     if len(ends) == 1:
@@ -487,58 +583,6 @@ def _finite(values: list[float], text: str) -> list[float]:
     raise UsageError(f"'{text}' is no range: its values are no numbers", fix=Range.LIKE)
 
 
-# -- requests of outputs -------------------------------------------------------------------------
-
-
-def requested_typed(model: Model, text: str) -> tuple[str, tuple[Taken, ...]]:
-    """Request whose plain numbers of the instant have the units of the model file, and these readings.
-
-    Raises:
-        UsageError: the instant cannot be read, or a unit does not fit.
-    """
-    formula, at, rest = text.partition(" at ")
-    condition, comma, event = rest.partition(", event")
-    if text in model.outputs or not at or condition.strip() == AtRest.text:
-        return text, ()
-    try:
-        sides = parse_typed_equation(condition)
-        _, taken = equation_typed(model, condition, declared=True)
-    except ExpressionError as error:
-        raise UsageError(f"'{text}': {error.what}", fix=error.fix) from error
-    units = {each.typed: each.unit for each in taken}
-    written = (f"{side.text} {units.get(side.text, '') if unit is None else unit.text}".strip() for side, unit in sides)
-    return f"{formula} at {' = '.join(written)}{comma}{event}", taken
-
-
-def requested_of(model: Model, text: str) -> Output:
-    """Output requested by a text: an output's name, a formula, or "FORMULA at EQUATION" with ", event 2" or "every".
-
-    In a formula the name of an output without an instant stands for its formula.
-
-    Raises:
-        UsageError: the text cannot be read, or a name in it is unknown.
-    """
-    if text in model.outputs:
-        return model.outputs[text]
-    formula, at, condition = text.partition(" at ")
-    condition, comma, event = condition.partition(", event")
-    try:
-        output = Output(value=parse(_in_full(model, formula.strip()), references=True, tables=model.functions))
-        if at:
-            when: Any = AtRest() if condition.strip() == AtRest.text else equation_in(model, condition.strip())
-            output = replace(output, at=when)
-        if comma:
-            output = replace(output, event=EVERY if event.strip() == EVERY else int(event))
-        model.requesting({"asked": output})
-    except ValueError as error:
-        raise UsageError(f"'{text}': '{event.strip()}' is no number of an event", fix=f"2, or {EVERY}") from error
-    except ExpressionError as error:
-        raise UsageError(f"'{text}': {error.what}", fix=error.fix) from error
-    except ModelError as error:
-        raise UsageError(f"'{text}': {error.problems[0].what}", fix=error.problems[0].fix) from error
-    return output
-
-
 def _in_full(model: Model, formula: str) -> str:
     """Formula in which names of outputs without an instant are replaced by their formulas."""
     tables = [*model.trusses.values(), model]
@@ -561,33 +605,6 @@ def _in_full(model: Model, formula: str) -> str:
 FOLLOW = "--follow theta=run.csv"
 LARGEST = 100_000_000  # bytes of a file
 LAWS = ("motion", "rate", "acceleration")
-
-
-def following(model: Model, given: Sequence[str]) -> Model:
-    """The model with coordinates and inputs that follow files: a coordinate in the way it was driven, else by `motion`.
-
-    Args:
-        given: NAME=FILE each; a CSV with the times in its first column and the values, in SI, in the column NAME, or
-            in its second.
-    Raises:
-        UsageError: no coordinate or input of that name, one that cannot be driven, or a file without samples.
-    """
-    coordinates, inputs = dict(model.coordinates), dict(model.inputs)
-    for name, path in assignments(given, FOLLOW):
-        if name in inputs:
-            inputs[name] = inputs[name].altered(value=_samples_of(path, name))
-        elif name in coordinates:
-            coordinates[name] = _driven(coordinates[name], name, _samples_of(path, name))
-        else:
-            fix = _named(name, [*coordinates, *inputs])
-            raise UsageError(f"--follow: there is no coordinate or input '{name}'", fix=fix)
-    changes: dict[str, Any] = {"coordinates": Table(coordinates), "inputs": Table(inputs)}
-    try:
-        replace(model, **changes)  # what is wrong with a model is wrong with this one
-    except ModelError as error:
-        raise UsageError(f"--follow: {error.problems[0].what}", fix=error.problems[0].fix) from error
-    followed: Model = model.altered(**changes)
-    return followed
 
 
 def _driven(part: Coordinate, name: str, law: Expression) -> Coordinate:

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Annotated, Any, ClassVar
 
-from eomgen.errors import ExpressionError, UsageError
+from eomgen.errors import UsageError
 from eomgen.frozen import dataclass
 from eomgen.model.catalog import Catalog
 from eomgen.model.diagnostics import nearest
@@ -25,7 +25,6 @@ from eomgen.symbolic.expression import (
     Pose,
     Reference,
     Vector,
-    as_expression,
     cos,
     sin,
 )
@@ -37,18 +36,6 @@ from eomgen.symbolic.expression import (
 
 
 Laws = Mapping[str, Expression]
-
-
-def law_of(model: Model, value: Any) -> Expression | None:
-    """A law of the state: an expression with coordinates, rates or speeds in it; None for everything else."""
-    if not isinstance(value, (str, Expression)):
-        return None
-    try:
-        law = as_expression(value)
-    except ExpressionError:
-        return None  # reported where it is read as an input
-    moving = {*model.coordinates, *(f"{q}'" for q in model.coordinates), *model.speeds, *model.states}
-    return law if law.names & moving else None
 
 
 def with_feedback(model: Model, laws: Laws) -> Model:

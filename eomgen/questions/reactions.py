@@ -36,12 +36,12 @@ from eomgen.model import (
     Model,
     ModelOrPath,
     Output,
+    Requests,
     Table,
     Valued,
     Values,
     WrittenEquation,
     assignments,
-    equation_in,
 )
 from eomgen.proof import Certificate, certify_reactions
 from eomgen.questions.outputs_answered import Answers, solve
@@ -265,7 +265,7 @@ def _instant(model: Model, at: WrittenEquation | AtRest | str) -> WrittenEquatio
     if at.strip() == AtRest.text:
         return AtRest()
     try:
-        return equation_in(model, at)
+        return Requests(model).equation(at)
     except ExpressionError as error:
         raise UsageError(f"at {at}: {error.what}", fix=error.fix or 'write "theta = pi/2"') from error
 

@@ -25,7 +25,7 @@ from eomgen.documents import (
 )
 from eomgen.frozen import dataclass
 from eomgen.mechanics.free_bodies import ForceKind
-from eomgen.model import AtRest, ModelOrPath, Values, WrittenEquation, equation_in
+from eomgen.model import AtRest, ModelOrPath, Requests, Values, WrittenEquation
 from eomgen.proof import Certificate, ReportedForce, certify, cuts_reported
 from eomgen.resources import doing
 from eomgen.results.at_rest.steps import letter_of_load, letter_of_reaction
@@ -184,7 +184,7 @@ def free_bodies(
     """
     model = model_to_study(model, parameters, start)
     if isinstance(at, str):
-        at = AtRest() if at.strip() == AtRest.text else equation_in(model, at)
+        at = AtRest() if at.strip() == AtRest.text else Requests(model).equation(at)
     found = FreeBodies(cut_state(model, at))
     _ = found.bodies  # what cannot be cut free is refused here
     return found

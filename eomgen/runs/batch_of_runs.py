@@ -21,6 +21,7 @@ from eomgen.mechanics.start import Start
 from eomgen.model import (
     Model,
     Parameter,
+    Requests,
     Table,
     Typed,
     TypedNumbers,
@@ -29,7 +30,6 @@ from eomgen.model import (
     nearest,
     seconds,
     typed_values,
-    with_inputs,
 )
 from eomgen.proof import Promise
 from eomgen.resources import check_patience, doing
@@ -117,7 +117,7 @@ def _planned(
         raise UsageError(f"arrays of several lengths: {reported}", fix="give one value a run to each")
     shared = [{n: v for n, v in given.items() if n not in arrays[kind]} for kind, given in (
         ("parameters", parameters), ("start", start))]  # fmt: skip
-    model = with_inputs(simulator.model, {n: v for n, v in inputs.items() if n not in arrays["inputs"]})
+    model = Requests(simulator.model).with_inputs({n: v for n, v in inputs.items() if n not in arrays["inputs"]})
     model = Valued.of(model, *shared).model
     first = {kind: {n: float(v[0]) for n, v in each.items()} for kind, each in arrays.items() if kind != "inputs"}
     Valued.of(model, first["parameters"], first["start"])  # refuses what there is not
@@ -156,7 +156,7 @@ def _inputs_as_parameters(model: Model, inputs: Mapping[str, np.ndarray]) -> tup
     if not added:
         return model, found
     model = model.altered(parameters=Table({**model.parameters, **added}))
-    return with_inputs(model, dict(zip(inputs, added, strict=True))), found
+    return Requests(model).with_inputs(dict(zip(inputs, added, strict=True))), found
 
 
 # -- in lanes ------------------------------------------------------------------------------------------

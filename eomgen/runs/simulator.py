@@ -24,14 +24,13 @@ from eomgen.model import (
     Model,
     OutputSource,
     Parameter,
+    Requests,
     Table,
     Typed,
     Valued,
     Values,
     WrittenEquation,
-    law_of,
     nearest,
-    requested_of,
     seconds,
 )
 from eomgen.proof import Certificate, checked, rows_that_stay
@@ -249,7 +248,7 @@ def _formulas(model: Model, requested: tuple[str, ...]) -> dict[str, Expression]
             found[name] = model.outputs[name].value
         elif name not in (OUTPUTS, REACTIONS) and not _is_reaction(name):
             try:
-                found[name] = requested_of(model, name).value
+                found[name] = Requests(model).output(name).value
             except UsageError as error:
                 raise UsageError(
                     f"no column {error.what}", fix=f"a reaction, an output, a formula, '{REACTIONS}'"
@@ -343,7 +342,7 @@ def controllers_of(model: Model, inputs: Mapping[str, Any]) -> dict[str, Control
             raise UsageError(f"input '{name}': every {every:g} s makes no sense", fix="give a time above 0")
         if callable(law):
             _refuse_other_arguments(name, law)
-        found[name] = Controller(law if callable(law) else law_of(model, law) or as_expression(law), every)
+        found[name] = Controller(law if callable(law) else Requests(model).feedback(law) or as_expression(law), every)
     return found
 
 

@@ -24,7 +24,7 @@ from eomgen.frozen import with_fields
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.instant import Quantities
 from eomgen.mechanics.kinematics import Motion, Scope, SystemScene
-from eomgen.model import Model, Output, Typed, WrittenEquation, equation_in
+from eomgen.model import Model, Output, Requests, Typed, WrittenEquation
 from eomgen.proof import ReportedRun, RunProof, run_reported
 from eomgen.resources import PatienceEnded, doing, keep_what_there_is
 from eomgen.simulation import (
@@ -550,7 +550,7 @@ def _condition_of(model: Model, until: WrittenEquation | str) -> Callable[[Syste
     """
     text = until.text if isinstance(until, WrittenEquation) else until
     try:
-        equation = equation_in(model, until)
+        equation = Requests(model).equation(until)
         model.requesting({"until": Output(value=parse("t"), at=equation)})
     except ExpressionError as error:
         raise UsageError(f"until '{text}': {error.what}", fix=error.fix or 'write "theta = pi/2"') from error

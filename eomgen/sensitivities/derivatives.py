@@ -29,10 +29,10 @@ from eomgen.model import (
     ModelOrPath,
     Output,
     OutputSource,
+    Requests,
     Typed,
     Unit,
     Values,
-    requested_of,
     seconds,
 )
 from eomgen.proof import Certificate, Check, Tally, checked, differing
@@ -227,7 +227,7 @@ def unit_of_slope(model: Model, of: str, to: str) -> Unit:
 
 def _unit_of(model: Model, text: str) -> Unit | None:
     """The unit of a name or formula."""
-    output = requested_of(model, text)
+    output = Requests(model).output(text)
     declared = (*model.coordinates, *model.states, *model.parameters)
     own = model.units_of([text]).get(text) if text in declared else None
     if own is not None or text in model.parameters:
@@ -361,7 +361,7 @@ class _Asking:
         slopes: dict[tuple[str, str], Quantity] = {}
         in_si: dict[tuple[str, str], float] = {}
         for text in of:
-            output = requested_of(self.model, text)
+            output = Requests(self.model).output(text)
             for name in to:
                 unit = unit_of_slope(self.model, text, name)
                 try:
@@ -523,7 +523,7 @@ class _Asking:
         if not time > 0:
             raise UsageError(f"the time {time:g} s makes no sense", fix="give one above 0")
         texts = tuple(self.formulas(of))
-        formulas = {text: requested_of(self.model, text).value for text in texts}
+        formulas = {text: Requests(self.model).output(text).value for text in texts}
         instants = instants_of(samples, 0.0, time)
         symbols = self.phase.system.symbols
         x = symbols.x

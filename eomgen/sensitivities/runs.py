@@ -16,7 +16,7 @@ from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.linearization import CORNERS
 from eomgen.mechanics.start import Seeds
 from eomgen.mechanics.state import Numbers
-from eomgen.model import Model, model_at, requested_of
+from eomgen.model import Model, Requests, model_at
 from eomgen.pipeline import simulator
 from eomgen.proof import Certificate, Check, checked, unchecked
 from eomgen.questions import solve
@@ -323,7 +323,7 @@ def _value(model: Model, name: str) -> float:
 
 def _computed(model: Model, of: Sequence[str], to: str) -> Callable[[float], list[np.ndarray]]:
     """value -> each formula, as `solve` answers it."""
-    requested = {f"asked{k}": replace(requested_of(model, text), unit=None) for k, text in enumerate(of)}
+    requested = {f"asked{k}": replace(Requests(model).output(text), unit=None) for k, text in enumerate(of)}
 
     def found(value: float) -> list[np.ndarray]:
         answers = solve(_with(model.requesting(requested), to, value))
@@ -334,7 +334,7 @@ def _computed(model: Model, of: Sequence[str], to: str) -> Callable[[float], lis
 
 def _run(model: Model, of: Sequence[str], to: str, run: ChangingRun) -> Callable[[float], list[np.ndarray]]:
     """value -> each formula along the motion."""
-    requested = {f"asked{k}": replace(requested_of(model, text), unit=None) for k, text in enumerate(of)}
+    requested = {f"asked{k}": replace(Requests(model).output(text), unit=None) for k, text in enumerate(of)}
     again = simulator(model.requesting(requested), rtol=tolerances.FINE_RUN, atol=tolerances.FINE_RUN)
 
     def found(value: float) -> list[np.ndarray]:

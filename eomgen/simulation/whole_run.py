@@ -16,7 +16,7 @@ import numpy as np
 from eomgen.errors import DerivationError, ExpressionError, RunFailed
 from eomgen.frozen import dataclass
 from eomgen.mechanics.instant import Quantities
-from eomgen.model import Model, Output, OutputSource, WrittenEquation, formula_at, requested_of
+from eomgen.model import Model, Output, OutputSource, Requests, WrittenEquation, formula_at
 from eomgen.simulation.columns import OutputColumns
 from eomgen.simulation.event_location import ChebyshevPieces, resolved_curve
 from eomgen.simulation.motion import DenseMotion, Plan
@@ -64,7 +64,7 @@ class WholeRun:
         Raises:
             UsageError: the text cannot be read, or a name in it is unknown.
         """
-        return self.of(requested_of(self.model, requested) if isinstance(requested, str) else requested)
+        return self.of(Requests(self.model).output(requested) if isinstance(requested, str) else requested)
 
     def of(self, output: Output) -> RunValue:
         """Value of one output; an error becomes its message."""

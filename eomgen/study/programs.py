@@ -17,7 +17,7 @@ from eomgen.mechanics.constraints import Rank
 from eomgen.mechanics.dynamics import EquationsOfMotion, Explicit, System
 from eomgen.mechanics.free_bodies import Inverse, by_independent
 from eomgen.mechanics.instant import Quantities
-from eomgen.model import Output, OutputSource, TypedNumbers, are_several, nearest, time_law, typed_values
+from eomgen.model import Output, OutputSource, Requests, TypedNumbers, are_several, nearest, typed_values
 from eomgen.symbolic.exact import cramer, factor_solution
 from eomgen.symbolic.expression import (
     Node,
@@ -442,7 +442,7 @@ class GivenMotion:
                 raise UsageError(f"the values of '{name}': {what}", fix=getattr(error, "fix", "")) from error
             return self._through(name, values)
         scope, symbols = self.system.scope, self.system.symbols
-        scalar = scope.value(time_law(model, name, law, "motion").named(name))
+        scalar = scope.value(Requests(model).law(name, law, "motion").named(name))
         rate = tangent((scalar,), {symbols.t: 1})
         scalars = (scalar, *rate, *tangent(rate, {symbols.t: 1}))
         strangers = [x.name for x in symbols.x if depends_on(scalar, (x,))]

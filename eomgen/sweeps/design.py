@@ -24,7 +24,7 @@ import numpy as np
 from eomgen.errors import ExpressionError, UsageError
 from eomgen.files import json_text
 from eomgen.frozen import dataclass
-from eomgen.model import Model, Taken, TypedNumbers, Valued, loads, nearest, refuse_what_is_not_set
+from eomgen.model import Model, Requests, Taken, TypedNumbers, Valued, loads, nearest
 from eomgen.sensitivities import slope_requested
 from eomgen.symbolic.numeric import tolerances
 from eomgen.version import __version__
@@ -102,7 +102,7 @@ def spread_of(model: Model, text: str, *, declared: bool = True) -> tuple[DrawnV
     word, opened, inside = law.partition("(")
     if not equals or not opened or not inside.endswith(")"):
         raise UsageError(f"'{text}' is no distribution", fix=LIKE)
-    refuse_what_is_not_set(model, name, starts=True)
+    Requests(model).refuse_what_is_not_set(name, starts=True)
     known = LAWS.get(word.strip())
     if known is None:
         raise UsageError(f"'{text}': no distribution '{word}'", fix=nearest(word, LAWS) or f"one of {', '.join(LAWS)}")

@@ -11,7 +11,7 @@ from typing import Any
 
 from eomgen.documents import Document, Grid, plain_document, prose, proven, rendered
 from eomgen.errors import EomgenError, RunFailed, UsageError
-from eomgen.model import Model, Output, requested_of
+from eomgen.model import Model, Output, Requests
 from eomgen.pipeline import simulate
 from eomgen.proof import Certificate, Check, Tally, answered_otherwise, differing, drawn_otherwise, reported_of_all
 from eomgen.questions import solve
@@ -124,7 +124,7 @@ def _proof(found: Sweep) -> Certificate | None:
     set_ = dict(zip(plan.runs.names, first[4:], strict=False))
     model = kernel.valued(set_)
     formulas = [text for text in plan.requested if text not in plan.slopes]
-    requested = {f"asked{k}": requested_of(plan.model, text) for k, text in enumerate(formulas)}
+    requested = {f"asked{k}": Requests(plan.model).output(text) for k, text in enumerate(formulas)}
     model = model.requesting(requested)
     run = None if first[2] == WITHOUT_MOTION else _run_anew(model, plan.how)
     certificate = solve(model).certify() if run is None else run.certify()
@@ -163,7 +163,7 @@ def _answered_otherwise(
 ) -> Iterator[tuple[str, Callable[[], str]]]:
     """(output of a run, function that says how its reported value differs): by its samples, or by `solve`."""
     how = plan.how
-    outputs = {text: requested_of(plan.model, text) for text in plan.requested if text not in plan.slopes}
+    outputs = {text: Requests(plan.model).output(text) for text in plan.requested if text not in plan.slopes}
     for text, output in outputs.items():
         if is_without_motion(output):
             yield text, partial(_solved_otherwise, model, replace(output, unit=None), reported[text])

@@ -20,12 +20,11 @@ from eomgen.model import (
     Model,
     ModelOrPath,
     Range,
+    Requests,
     Typed,
     TypedNumbers,
     bytes_at,
     loads,
-    refuse_what_is_not_set,
-    requested_of,
     seconds,
     typed_values,
 )
@@ -125,7 +124,7 @@ class Sweep:
         """(the size in SI, the head "k [N/m]") of every column that has a unit, as the file declares it."""
         model = self.plan.model
         slopes, texts = self.plan.slopes, self.plan.requested
-        requested = {f"asked{k}": requested_of(model, text) for k, text in enumerate(texts) if text not in slopes}
+        requested = {f"asked{k}": Requests(model).output(text) for k, text in enumerate(texts) if text not in slopes}
         found = model.requesting(requested).units_of(requested)
         found |= {f"asked{k}": unit_of_slope(model, *slopes[text]) for k, text in enumerate(texts) if text in slopes}
         units = model.units_of(self.plan.runs.names)
@@ -255,7 +254,7 @@ def _values(model: Model, name: str, given: Any) -> tuple[float, ...]:
         logarithmic = given.startswith("log:")
         text = f"{'log:' * logarithmic}{name}={given.removeprefix('log:')}"
         return Range.of(model, text, starts=True, declared=False).values
-    refuse_what_is_not_set(model, name, starts=True)
+    Requests(model).refuse_what_is_not_set(name, starts=True)
     typed = TypedNumbers(model, name, declared=False)
     try:
         values = tuple(map(typed.number, typed_values(given)))
@@ -303,7 +302,7 @@ def planned(model: Model, *, runs: int | None, **fields: Any) -> SweepPlan:
     refuse_bad_run(0.0, how.time, Stepping(how.method, how.rtol, how.atol))
     for text in plan.requested:
         of, to = plan.slopes.get(text, (text, ""))
-        output = requested_of(model, of)
+        output = Requests(model).output(of)
         moving = (*model.coordinates, *model.speeds, *model.states)
         if to and to.removesuffix("'") not in (*model.parameters, *moving):
             raise UsageError(f"'{text}': no parameter, coordinate, speed or state '{to}'", fix="name one of the model")

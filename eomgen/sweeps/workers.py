@@ -29,7 +29,7 @@ from typing import Any
 from eomgen.errors import EomgenError, RunFailed, UsageError, WriteFailed
 from eomgen.frozen import dataclass
 from eomgen.mechanics.instant import Quantities
-from eomgen.model import Model, Output, OutputSource, Valued, requested_of
+from eomgen.model import Model, Output, OutputSource, Requests, Valued
 from eomgen.pipeline import simulator
 from eomgen.questions import solve
 from eomgen.resources import PatienceEnded
@@ -338,7 +338,7 @@ class SweepKernel:
         texts = (text for text in self.plan.requested if text not in self.plan.slopes)
         found: dict[bool, dict[str, Output]] = {False: {}, True: {}}
         for text in texts:
-            output = requested_of(self.plan.model, text)
+            output = Requests(self.plan.model).output(text)
             found[is_without_motion(output)][text] = output
         return found
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from eomgen.errors import ExpressionError, UsageError
-from eomgen.model import AtRest, Model, Taken, Valued, assignments, equation_typed
+from eomgen.model import AtRest, Model, Requests, Taken, Valued, assignments
 from eomgen.questions import positions_at_rest, variant_of
 
 OPTIONS = {"set_": "--set", "start": "--start", "from_rest": "--from-rest", "at": "--at", "until": "--until"}
@@ -48,6 +48,6 @@ def _equation(model: Model, text: str, option: str) -> tuple[Any, tuple[Taken, .
     if text.strip() == AtRest.text and option == "--at":
         return AtRest(), ()
     try:
-        return equation_typed(model, text, declared=True)
+        return Requests(model).equation_taken(text, declared=True)
     except ExpressionError as error:
         raise UsageError(f"{option} {text}: {error.what}", fix=error.fix or f'write {option} "theta = pi/2"') from error

@@ -7,7 +7,7 @@ from dataclasses import replace
 from eomgen.documents import Document
 from eomgen.errors import UsageError
 from eomgen.frozen import dataclass
-from eomgen.model import Model, Range, assignments, requested_typed
+from eomgen.model import Model, Range, Requests, assignments
 from eomgen.questions import variant_of
 from eomgen.sweeps import Stepped, planned, spread_of, sweep_reported, swept
 from eomgen.verbs.assignments import typed
@@ -50,8 +50,8 @@ def sweep_document(
     valued, _ = typed(model, {"set_": requested.set_, "start": requested.start})
     ranges = [Range.of(valued.model, word, starts=True) for word in requested.over]
     spreads = [spread_of(valued.model, word) for word in requested.random]
-    ask = [requested_typed(valued.model, text) for text in requested.ask]
-    critical = requested_typed(valued.model, requested.critical)
+    ask = [Requests(valued.model).output_taken(text) for text in requested.ask]
+    critical = Requests(valued.model).output_taken(requested.critical)
     names = [each.name for each in ranges]
     if len(set(names)) < len(names):
         raise UsageError("--over: one name twice", fix="give each range once")
