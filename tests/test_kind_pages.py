@@ -29,7 +29,7 @@ EVERY = list(kinds.kinds())
 SHOWN = [kind for kind in EVERY if (kinds.EXAMPLES / f"{kind}.toml").exists()]  # the first test names the others
 NOT_DRAWN = {
     *("planar", "free", "placed"),  # nothing is there that could be drawn
-    *("equation", "generalized", "kinetic", "potential"),  # of coordinates
+    *("equation", "generalized", "kinetic", "potential", "added_mass"),  # of coordinates
     *("gear", "torsion_damper"),  # seen by its bodies
 }
 

@@ -453,6 +453,10 @@ joint = { kind = "revolute", at = [1, 0, 0], angle = "f" }
     "forces": ARMS_3
     + all_forces(
         weight="kind = 'gravity'\nacceleration = ['sin(t)', 0, -9.81]\nbodies = ['two']",
+        wing="kind = 'plate'\npoint = 'two.Q'\ndensity = 'm'\narea = 2\nlift = '2*alpha'\ndrag = 'c'\n"
+        "chord = [3, 4, 0]\nnormal = [0, 0, -1]\nmedium = [-7, 'sin(t)', 1]",
+        wheel="kind = 'tyre'\npoint = 'one.end'\nradius = 'l'\nlongitudinal = { stiffness = 'k' }\naxle = [1, 0, 2]\n"
+        "lateral = { stiffness = 'k', relaxation = 2 }\nsmooth = 1",
         force="kind = 'force'\npoint = 'two.Q'\nforce = ['u', \"-a'\", 1]\naxes = 'one'",
         couple="kind = 'couple'\nbody = 'two'\ncouple = ['u*a', 0, 1]\naxes = 'one'",
         ramp="kind = 'distributed'\nbody = 'one'\nbetween = ['start', 'end']\nintensities = [[0, 0, 1], ['u', -3, 0]]",
