@@ -153,3 +153,26 @@ def test_what_cannot_be_a_tyre_is_refused_by_name(old, new, message):
     """What, where, and how to mend it."""
     with pytest.raises(ModelError, match=message):
         eomgen.loads(LOOSE.replace(old, new))
+
+
+SLIDING = """
+eomgen = 1
+space = "plane"
+coordinates = { x = { speed = 5 }, y = { speed = 1 } }
+bodies.sledge = { shape = { kind = "particle", mass = 2 }, joint = { kind = "placed", at = ["x", "y"] } }
+forces.blade = { kind = "tyre", point = "sledge.center", lateral = { stiffness = 40, relaxation = 0.5 } }
+"""
+
+
+def test_an_equation_of_a_slip_is_right_while_the_wheel_goes_ahead():
+    """l s' = v_y - |v_x| s is written with v_x: right where that is above 0; with the other sign it is wrong."""
+    drag = """forces.snow = { kind = "force", point = "sledge.center", force = ["-3*x'", 0] }"""
+    model = eomgen.loads(SLIDING + drag)
+    verdict = eomgen.verify(model, "blade_slip' = (y' - x'*blade_slip)/0.5")
+    assert verdict.verdict == "right" and verdict.up_to.endswith("x' > 0")
+    assert eomgen.verify(model, "blade_slip' = (y' + x'*blade_slip)/0.5").verdict == "wrong"
+
+
+def test_what_stands_on_a_tyre_may_rest_anywhere():
+    """Nothing pushes at rest: places with states beside them, and no constraint, are one family."""
+    assert len(eomgen.statics(eomgen.loads(SLIDING)).places) == 1

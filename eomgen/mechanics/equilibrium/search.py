@@ -629,7 +629,7 @@ def _marks(statics: StaticEquations, slopes: ScalarRows, z: np.ndarray, values: 
     J = statics.slopes(statics.J, z[:n], values)
     H = -Doubles(values).array(slopes, n)
     _, sizes, axes = np.linalg.svd(J)
-    Z = axes[int(np.sum(sizes > tolerances.CARRIED * sizes[0])) :].T
+    Z = axes[int(np.sum(sizes > tolerances.CARRIED * sizes.max(initial=0.0))) :].T
     symbols = statics.system.symbols
     given = {**{x: 0.0 for x in symbols.x}, symbols.t: 0.0}
     (V,) = evaluate((statics.system.loads.potential_energy,), {**_given(statics, values), **given, **values}, FLOAT)
