@@ -196,7 +196,7 @@ class CompiledPhases:
                 return
             if answer in (NEEDS_PHASE, NEEDS_SLIDES):
                 tables.p[:] = p[many.next]  # the values at which what is made is first evaluated
-                self._decisions.make(answer)
+                self._decisions.make(answer, always=True)
 
     # -- one run ----------------------------------------------------------------------------------------
 
@@ -217,8 +217,8 @@ class CompiledPhases:
                     return
             if found == LEFT:
                 return
-            if found in (NEEDS_PHASE, NEEDS_SLIDES):
-                self._decisions.make(found)
+            if found in (NEEDS_PHASE, NEEDS_SLIDES) and not self._decisions.make(found, always=False):
+                return
             try:
                 check_patience()
             except (PatienceEnded, KeyboardInterrupt) as stop:
@@ -248,6 +248,8 @@ class CompiledPhases:
         m.n_ended, number = len(ended), code(here.configuration)
         entry = next((entry for entry in tables.entries if entry.code == number), None)
         if entry is None:
+            if not tables.models.comes_again(here.configuration, "asked for"):
+                return False
             tables.add_phase(number, here.configuration, here.t, here.values)
             return self._begun(here, end, instants, ended)  # its names have places now
         m.now = ctypes.addressof(entry)
@@ -295,18 +297,25 @@ class _Decisions:
             self._known[code] = Configuration(Table(modes))
         return self._known[code]
 
-    def make(self, what: int) -> None:
-        """The phase or the sliding velocities that C needs."""
+    def make(self, what: int, *, always: bool) -> bool:
+        """True if the phase or the sliding velocities that C needs are made; False: it is not worth a compiler yet.
+
+        Args:
+            always: it is made all the same.
+        """
         tables, m = self.tables, self.tables.machine
         needed = int(m.needed)
         if what == NEEDS_SLIDES:
             tables.add_slides(needed)
-            return
+            return True
         values = tables.named(tables.after.tolist())
         if m.by_gauss:
             needed = self._by_gauss(needed, m.t, values)
         if all(entry.code != needed for entry in tables.entries):
+            if not (always or tables.models.comes_again(self.configuration(needed), "asked for")):
+                return False
             tables.add_phase(needed, self.configuration(needed), m.t, values)
+        return True
 
     def _by_gauss(self, first: int, t: float, values: Values) -> int:
         """The number of the configuration in which joints at rest go on, where all of them stick in the first."""

@@ -33,6 +33,7 @@ from eomgen.symbolic.print import to_text
 
 LOOK_PHASES = 1000  # from one look at how fast they follow one another to the next
 MOST_PHASES = 100_000  # that may be left to the end: about half an hour of work
+FEW_STEPS = 200  # of a phase that is run by Python where it may never come again
 STEPS_AGAIN = 10_000  # of the finer integration across one instant
 
 
@@ -81,7 +82,7 @@ def _passed(models: PhaseModels, here: PhaseStart, plan: Plan, in_c: CompiledPha
         if failure:
             yield _standstill(phase, here, failure)
             return
-        run, rests = _until_rest(phase, here, plan)
+        phase, run, rests = _followed(models, phase, here, plan)
         if rests is not None:
             yield PhaseRun(here, phase, run, None, rests)
             here = rests
@@ -140,6 +141,18 @@ class _Pace:
             return ""
         (looked, self.looked), self.seen = (self.looked, here.t), self.count
         return _endless(phase, self.count, (looked, here.t, self.plan.end))
+
+
+def _followed(
+    models: PhaseModels, phase: PhaseModel, here: PhaseStart, plan: Plan
+) -> tuple[PhaseModel, Run, PhaseStart | None]:
+    """(the phase, and as of `_until_rest`): where it may never come again and is short, without a compiler."""
+    if not models.comes_again(here.configuration) and plan.how.most_steps > FEW_STEPS:
+        few, own = replace(plan, how=replace(plan.how, most_steps=FEW_STEPS)), phase.interpreted
+        run, rests = _until_rest(own, here, few)
+        if run.status != "too many steps":
+            return own, run, rests
+    return phase, *_until_rest(phase, here, plan)
 
 
 def _until_rest(phase: PhaseModel, here: PhaseStart, plan: Plan) -> tuple[Run, PhaseStart | None]:

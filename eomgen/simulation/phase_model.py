@@ -80,6 +80,11 @@ class PhaseModel:
     def functions(self) -> PhaseFunctions:
         return PhaseFunctions(self.equations, self.p, self.target)
 
+    @property
+    def interpreted(self) -> PhaseModel:
+        """The same by Python alone, which needs no compiler: for few steps."""
+        return replace(self, target="numpy", known={})
+
     def at(self, p: np.ndarray, fed: Fed | None = None) -> PhaseModel:
         """The same at other values of the parameters."""
         found = replace(self, p=p, fed=fed)

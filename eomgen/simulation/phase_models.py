@@ -35,6 +35,7 @@ from eomgen.symbolic.numeric import tolerances
 from eomgen.symbolic.print import to_text
 
 OPEN = ContactMode(closed=False)
+MOST_COMPILED = 64  # configurations up to which each is compiled when it first comes; of more those that come again
 
 
 def integrated_system(system: System) -> System:
@@ -113,7 +114,8 @@ class PhaseModels:
         self._origin = origin
         self._made: dict[Configuration, PhaseModel] = {}
         self._last: tuple[Configuration, PhaseModel] | None = None
-        self.known: dict[str, dict[Hashable, Any]] = {"starts": {}, "in C": {}}  # by what they were found from
+        # by what they were found from; configurations that a run has come to, or asked for
+        self.known: dict[str, dict[Hashable, Any]] = {"starts": {}, "in C": {}, "come to": {}, "asked for": {}}
         self._slides: dict[Configuration, Slides] = {}
 
     def at(self, p: np.ndarray, fed: Fed | None = None) -> PhaseModels:
@@ -151,6 +153,26 @@ class PhaseModels:
                 self._made[configuration] = made if self._origin is None else made.at(self.p, self._origin[1])
             self._last = configuration, self._made[configuration]
         return self._last[1]
+
+    def comes_again(self, configuration: Configuration, how: str = "come to") -> bool:
+        """True if a phase is worth a compiler: of a model with few, the first of a run, or one that was there before.
+
+        Args:
+            how: a run has "come to" it, or it was "asked for", of several of which one agrees.
+        """
+        if self._origin is not None:
+            return self._origin[0].comes_again(configuration, how)
+        before = {**self.known["come to"], **(self.known[how])}
+        self.known[how][configuration] = True
+        return self.target is not None or not self._is_many or not before or configuration in before
+
+    @cached_property
+    def _is_many(self) -> bool:
+        """True if the contacts have more configurations than are compiled one and all."""
+        found = 1
+        for contact in self.model.contacts:
+            found *= (3 if contact.dry else 1) + contact.unilateral
+        return found > MOST_COMPILED
 
     def slides(self, configuration: Configuration) -> Slides:
         """The sliding velocities of a configuration, for which no force needs to be known."""

@@ -123,3 +123,34 @@ def test_a_ball_in_a_corner_rebounds_from_both_walls_at_once(law, monkeypatch):
         v / 2 * (run.t[-1] - v / 9.81) - 9.81 / 2 * (run.t[-1] - v / 9.81) ** 2, abs=1e-9
     )
     assert bool(left) == bool(law)
+
+
+LIMBS = """
+eomgen = 1
+space = "plane"
+repeat = { i = "n" }
+parameters = { n = 4, g = 9.81 }
+forces.weight = { kind = "gravity", acceleration = [0, "-g"] }
+points.O = [0, 0]
+coordinates."q{i}" = { start = "1 - 0.2*{i}" }
+[bodies."limb{i}"]
+shape = { kind = "rod", mass = 1, length = 1 }
+joint = { kind = "revolute", on = ["limb{i-1}.end", "O"], angle = "q{i}", friction = { torque = "3/{i}^2" } }
+"""
+
+
+def test_of_many_combinations_of_stick_and_slip_only_those_that_come_again_are_compiled():
+    """Four joints have 81: the first and the second time of each other one; the motion is that of Python alone.
+
+    Slow: phases are derived and compiled.
+    """
+    model = eomgen.loads(LIMBS)
+    found, due = (eomgen.simulate(model, time=2.0, target=target) for target in (None, "numpy"))
+    assert phases_of(found)[0] == phases_of(due)[0]
+    assert phases_of(found)[1] == pytest.approx(phases_of(due)[1], abs=1e-7)
+    seen: dict[object, list[str]] = {}
+    for phase in found.phases:
+        seen.setdefault(phase.model.configuration, []).append(phase.model.functions.rhs.target)
+    first, *later = seen.values()
+    assert first[0] == "c" and len(later) > 5
+    assert all(targets[0] == "numpy" and set(targets[1:]) <= {"c"} for targets in later)
