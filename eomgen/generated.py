@@ -224,7 +224,7 @@ class Generated:
             fine = pipeline.simulate(self.model, time=TESTED, rtol=FINE, atol=FINE, samples=2)
             struck = {impact.t for impact in fine.impacts}
             pairs = zip(fine.phases, fine.phases[1:], strict=False)
-            changes = [a.end for a, b in pairs if a.end in struck or a.model is not b.model]
+            changes = [a.end for a, b in pairs if a.end in struck or a.model.configuration != b.model.configuration]
             last = dict(zip(fine.moving, fine.x[-1].tolist(), strict=True))
             tested = (changes, float(fine.t[-1]), last) if fine.ok else None
         p = np.array(p0 if p0 is not None else [math.nan] * len(self.model.parameters))

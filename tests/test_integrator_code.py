@@ -218,6 +218,7 @@ def through_phases(tmp_path: Path, name: str) -> Path:
     eomgen.generate(model_with_phases(name), name=name, integrator=True).write(tmp_path)
     for word, made in (("MAIN", "run"), ("RUN_SELFTEST", "selftest")):
         files = [f"{name}_run.c", f"{name}_rhs.c", "-lm", "-o", made]
+        assert f" -D{name}_{word} {name}_run.c" in (tmp_path / "README.md").read_text()
         found = subprocess.run([CC, *STRICT, f"-D{name}_{word}", *files], cwd=tmp_path, capture_output=True, text=True)
         assert found.returncode == 0, found.stderr
     return tmp_path

@@ -15,7 +15,7 @@ from eomgen.codegen.kernel_reader import solve_bordered
 from eomgen.codegen.program import Program, Solve, at_unit_norms, stem_of
 from eomgen.codegen.rhs import RightHandSide, target_named, targets_named
 from eomgen.codegen.targets.base import Called, Description, Emitted, FileContent, Role, Target, TestVector, header
-from eomgen.codegen.targets.c_lanes import RUN_USE, integrator_files
+from eomgen.codegen.targets.c_lanes import RUN_TEST, RUN_USE, integrator_files
 from eomgen.errors import DerivationError, visible
 from eomgen.files import json_text
 from eomgen.frozen import dataclass
@@ -186,7 +186,8 @@ class Files:
         return self._texts(self.emitted)
 
     def _texts(self, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
-        uses = {} if self.begin is None else {"c": [RUN_USE]}
+        tests = any("RUN_SELFTEST" in text for text in self.run.values())
+        uses = {} if self.begin is None else {"c": [RUN_USE, *([RUN_TEST] if tests else [])]}
         texts = texts_of(self.name, emitted, targets=self.targets, notes=self.notes, uses=uses)
         found = texts | {f"{self._folder('c')}{name}": text for name, text in self._integrator.items()}
         return {path: visible(text) if isinstance(text, str) else text for path, text in found.items()}

@@ -19,7 +19,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property, partial
 from itertools import pairwise
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -222,27 +222,42 @@ def _state(system: System, values: Mapping[str, float], p: np.ndarray, t: float)
 # -- from phase to phase ---------------------------------------------------------------------------
 
 
+class Reported(Protocol):
+    """An impact as it is reported: impulses by name, the kinetic energy lost [J]."""
+
+    @property
+    def impulses(self) -> dict[str, float]: ...
+
+    @property
+    def loss(self) -> float: ...
+
+
 def changes_follow_impulses(
     phases: Sequence[Phase],
     apart: System,
     contacts: Sequence[str],
-    impulses: Mapping[float, Mapping[str, float]],
+    impacts: Mapping[float, Reported],
 ) -> Iterator[Check]:
     """Check that only constraints, and contacts that touch, change the momentum between phases; none with one phase.
 
     Args:
         apart: the model without its contacts that can end.
         contacts: their names.
-        impulses: of each impact by its instant; those of joints are held against the momenta of the bodies.
+        impacts: by their instants, as they are reported: their impulses and losses are held against the momenta and
+            the energies of the bodies.
     """
     tally = Tally("changes of contact follow impulses that only push", "momenta of the bodies")
     joints = Tally("impulses of joints change the momenta of the bodies", "momenta of the bodies")
+    reported = Tally("impulses and losses of impacts are those of their speeds", "momenta and energies of the bodies")
     for before, after in pairwise(phases):
-        bodies, own = _Bodies(apart, tuple(contacts), before, after), impulses.get(after.start, {})
+        bodies, impact = _Bodies(apart, tuple(contacts), before, after), impacts.get(after.start)
+        own = {} if impact is None else impact.impulses
         tally.add(f"t = {after.start:.6g} s", bodies.wrong)
+        if impact is not None:
+            reported.add(f"t = {after.start:.6g} s", partial(bodies.reported_otherwise, impact))
         for body in bodies.on_joints_alone(own) if joints.held < MOST_IMPULSES else ():
             joints.add(f"{body}, t = {after.start:.6g} s", partial(bodies.gains_otherwise, body, own))
-    yield from (*tally.checks(), *joints.checks())
+    yield from (*tally.checks(), *reported.checks(), *joints.checks())
 
 
 @dataclass(frozen=True)
@@ -287,6 +302,49 @@ class _Bodies:
                 frees += [J for J, v in found[1:] if abs(v) <= tolerances.OPEN_GAP * size]
         otherwise = self._otherwise_by_iteration(early, late) if rubs else ""
         return otherwise or self._left(pushes, frees, early, late)
+
+    def reported_otherwise(self, impact: Reported) -> str:
+        """Message if the reported impulses do not change the momenta to those of the speeds, or the loss is another.
+
+        M (u+ - u-) = J^T Lam,   T- - T+ = loss
+
+        Raises:
+            NoValue: impulses have no single values.
+        """
+        early, late = self._state(self._end), self._state(self._begin)
+        n = len(self.system.symbols.u)
+        units = self._momenta(late, [*np.eye(n), np.zeros(n)])
+        M, (before, after) = units[:-1] - units[-1], (x[len(self.system.symbols.q) :][:n] for x in (early, late))
+        T = SystemInertia(self.system.motion).kinetic_energy
+        lost = float(np.diff(self._numbers((T,), np.array([late, early]))[:, 0])[0])
+        if abs(lost - impact.loss) > tolerances.CARRIED * (1 + abs(lost) + float(before @ M @ before)):
+            return f"{lost:.6g} J of kinetic energy are lost, and {impact.loss:.6g} J are reported"
+        pushed, pushes = np.zeros(n), self._reported_pushes(late)
+        for name, x in impact.impulses.items():
+            if name in pushes and not np.isfinite(x):
+                raise NoValue("impulses have no single values")
+            pushed = pushed + x * pushes.get(name, np.zeros(n))
+        gained = M @ (after - before)
+        if np.max(np.abs(gained - pushed), initial=0.0) > tolerances.OPEN_GAP * (1 + float(np.max(np.abs(gained)))):
+            k = int(np.argmax(np.abs(gained - pushed)))
+            along = self.system.symbols.u[k].name
+            return f"along {along} the momentum changes by {gained[k]:.6g}, the reported impulses give {pushed[k]:.6g}"
+        return ""
+
+    def _reported_pushes(self, state: np.ndarray) -> dict[str, np.ndarray]:
+        """J of each impulse by the name under which it is reported."""
+        found: dict[str, np.ndarray] = {}
+        for name, rows in self._rows.items():
+            for k, (row, (J, _)) in enumerate(zip(rows, self._rows_at(rows, state), strict=True)):
+                found[name if k == 0 else f"{name} {row.component}"] = J
+            along = [J for J, _ in self._sliding_rows(rows[0], state)] if name in self._frictions else []
+            labels = [f"{name} t"] if len(along) == 1 else [f"{name} t{k}" for k in range(1, len(along) + 1)]
+            found |= dict(zip(labels, along, strict=True))
+        closing, several = self.system.constraints.closing, [row.constraint for row in self.system.constraints.rows]
+        for row, (J, _) in zip(closing, self._rows_at(closing, state), strict=True):
+            alone = several.count(row.constraint) == 1 or not row.component
+            found[row.constraint if alone else f"{row.constraint} {row.component}"] = J
+        return found
 
     def on_joints_alone(self, impulses: Mapping[str, float]) -> list[str]:
         """The bodies on which joints act in an impact, all with their impulses, and no force of anything else."""

@@ -135,8 +135,8 @@ def _contacts(found: Trajectory, models: PhaseModels) -> Iterator[Check]:
     yield from contacts_do_as_assumed(seen)
     if len(seen) > 1:
         yield from bodies_stand_as_reported(seen, models.without_contacts.system)
-        impulses = {impact.t: impact.impulses for impact in found.impacts}
-        yield from changes_follow_impulses(seen, models.without_contacts.system, models.ends, impulses)
+        impacts = {impact.t: impact for impact in found.impacts}
+        yield from changes_follow_impulses(seen, models.without_contacts.system, models.ends, impacts)
 
 
 # -- outputs of the whole run, by its samples ----------------------------------------------------------

@@ -701,7 +701,7 @@ def test_an_impact_is_asked_of_a_contact_that_can_close():
     with pytest.raises(UsageError, match="'wall' is no contact that can close"):
         derived(TWO_BALLS, "wall")
     with pytest.raises(DerivationError, match="friction has a part in the impact of 'floor'"):
-        derived(DUMBBELL.replace('restitution = "e"', 'restitution = "e"\nfriction = 0.3'))
+        impact(eomgen.loads('eomgen = 1\nspace = "space"\n' + ROUGH_BALL), [])
 
 
 # -- machines with several contacts ----------------------------------------------------------------

@@ -108,6 +108,7 @@ void {stem}_at({stem}_run *run, double t, double *x);
 """
 
 
+RUN_TEST = "cc -O2 -D{stem}_RUN_SELFTEST {stem}_run.c {stem}_rhs.c -lm -o {stem}_test && ./{stem}_test"
 RUN_USE = "cc -O2 -D{stem}_MAIN {stem}_run.c {stem}_rhs.c -lm -o {stem}_run && ./{stem}_run --time=10 > motion.csv"
 """how the program is made and run"""
 
