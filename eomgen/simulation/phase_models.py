@@ -166,7 +166,7 @@ class PhaseModels:
         self.known[how][configuration] = True
         return self.target is not None or not self._is_many or not before or configuration in before
 
-    @cached_property
+    @property
     def _is_many(self) -> bool:
         """True if the contacts have more configurations than are compiled one and all."""
         found = 1
