@@ -109,4 +109,4 @@ def test_a_docstring_begins_with_a_noun_or_a_verb():
         for node in nodes_of(path)
         if isinstance(node, kinds) and (said := ast.get_docstring(node)) and said.split()[0].strip("`(),.:;") in OPENERS
     ]
-    assert not found
+    assert not found, "say first what comes back or what is done: a noun or a verb"
