@@ -54,6 +54,33 @@ def test_a_slack_cord_with_damping_pulls_and_brakes_nothing():
     assert float(eomgen.solve(model)["T"].value) == 0
 
 
+TOUCHING = """
+coordinates.x = { start = 1, speed = SPEED }
+points.O = [0, 0]
+[bodies.ball]
+mass = 2
+joint = { kind = "prismatic", axis = [1, 0], displacement = "x" }
+[forces.F]
+kind = "KIND"
+stiffness = 300
+damping = 60
+length = LENGTH
+[outputs]
+a = "x''"
+"""
+
+
+@pytest.mark.parametrize(
+    ("kind", "way", "speed", "length"),
+    [("rope", "path", 0.8, "1"), ("rope", "path", 0.8, '"start"'), ("bumper", "points", -0.8, "1")],
+)
+def test_what_only_touches_does_nothing(kind, way, speed, length):
+    """Stretch or compression 0: neither above 0 nor half of it, at whatever speed, also where the motion starts so."""
+    text = TOUCHING.replace("SPEED", str(speed)).replace("KIND", kind).replace("LENGTH", length)
+    model = eomgen.loads(HEAD + text.replace("[outputs]", f'{way} = ["O", "ball.origin"]\n[outputs]'))
+    assert float(eomgen.solve(model)["a"].value) == 0
+
+
 HOIST = (
     HEAD
     + WEIGHT

@@ -12,7 +12,7 @@ from eomgen.model.forces.elements import Reach, Straight
 from eomgen.model.forces.load import LoadContext
 from eomgen.model.kinds import RESISTS, TAKES, Direction, Length, LinearDamping
 from eomgen.model.positions import DocumentPath
-from eomgen.symbolic.expression import Expression, Fraction, Scalar, function, over
+from eomgen.symbolic.expression import Expression, Scalar, function, over
 
 Hardness = Annotated[Expression, FormulaRule(None, "nonnegative", usually=RESISTS)]
 Exponent = Annotated[Expression, FormulaRule("1", "positive")]
@@ -72,7 +72,7 @@ class Bumper(Straight):
         if self.damping is None:
             return -push
         whole = function("max", 0, push - scene.value(self.damping) * line.rate)
-        return -Fraction(1, 2) * whole * (1 + function("sign", x))
+        return -whole * function("max", 0, function("sign", x))
 
     def potential(self, scene: LoadContext) -> Scalar | None:
         """V = k x^(n + 1)/(n + 1) where x > 0; None where it takes energy."""

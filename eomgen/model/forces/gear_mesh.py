@@ -132,9 +132,9 @@ class GearMesh(Force):
         if self.damping is None:
             return k * (function("max", 0, x - half) - function("max", 0, -x - half))
         push = scene.value(self.damping) * scene.rate(x)
-        ahead = function("max", 0, k * (x - half) + push) * (1 + function("sign", x - half))
-        behind = function("max", 0, k * (-x - half) - push) * (1 + function("sign", -x - half))
-        return Fraction(1, 2) * (ahead - behind)
+        ahead = function("max", 0, k * (x - half) + push) * function("max", 0, function("sign", x - half))
+        behind = function("max", 0, k * (-x - half) - push) * function("max", 0, function("sign", -x - half))
+        return ahead - behind
 
     def _shares(self, scene: LoadContext, side: Scalar) -> tuple[Scalar, Scalar]:
         """(of M on the first, of ratio M on the second), the driven one eta, the other 1; side has the sign of M."""

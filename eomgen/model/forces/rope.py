@@ -81,7 +81,7 @@ class Rope(Force):
         if self.damping is None:
             return function("max", 0, k * s)
         pull = function("max", 0, k * s + scene.value(self.damping) * scene.rate(s))
-        return Fraction(1, 2) * pull * (1 + function("sign", s))
+        return pull * function("max", 0, function("sign", s))
 
     def loads(self, scene: LoadContext) -> tuple[Load, ...]:
         """T along every strand, on what it leaves and what it reaches."""
