@@ -113,8 +113,9 @@ class Catalog:
     def joints_with_friction(self) -> dict[str, bool]:
         """{joint, brake, clutch or belt: True of a torque, False of a force} of all dry friction of a given rate."""
         joints = ((name, body.joint) for name, body in self.table("bodies").items() if body is not None and body.joint)
-        found = ((body, joint, each) for body, joint in joints for each in joint.frictions)
-        forces = ((name, force.friction) for name, force in self.table("forces").items() if force is not None)
+        found = ((body, joint, each) for body, joint in joints if joint.is_whole for each in joint.frictions)
+        whole = ((name, force) for name, force in self.table("forces").items() if force is not None and force.is_whole)
+        forces = ((name, force.friction) for name, force in whole)
         turns = {joint.named_contact(body, field): law.amount == "torque" for body, joint, (_, field, law) in found}
         return turns | {name: law.amount == "torque" for name, law in forces if law is not None}
 

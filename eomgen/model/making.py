@@ -198,8 +198,8 @@ def constraints(catalog: Catalog) -> Iterator[Diagnostic]:
             yield from part.diagnostics(path, catalog)
             if table == "constraints":
                 yield from _on_itself(catalog, path, part)
-            friction = getattr(part, "friction", None) if table == "constraints" and part.exponent is None else None
-            if friction is not None:
+            declared = table == "constraints" and part.is_whole and part.exponent is None
+            if declared and (friction := getattr(part, "friction", None)) is not None:
                 yield from diagnostics_of_one(catalog, (*path, "friction"), friction, ("coulomb", "viscous"))
 
 

@@ -88,6 +88,12 @@ class _Fields:
         return Signature(fields)
 
 
+def _is_whole(value: Any, required: bool) -> bool:
+    if isinstance(value, tuple):
+        return all(_is_whole(x, required) for x in value)
+    return value.is_whole if isinstance(value, Part) else value is not None or not required
+
+
 def _shown(value: Any) -> str:
     """A value as it is written."""
     if isinstance(value, (Expression, Unit, WrittenEquation, Symbol)):
@@ -140,6 +146,11 @@ class Part:
         """The part with some fields changed to values that were read already."""
         own = (*(slot.name for slot in self.slots()), *self.made())
         return type(self).of_values({name: getattr(self, name) for name in own} | changes)
+
+    @property
+    def is_whole(self) -> bool:
+        """True if all that must be given could be read, in the parts in it too: what follows of its fields exists."""
+        return all(_is_whole(getattr(self, slot.name), slot.required) for slot in self.slots())
 
     def leaves(self, path: DocumentPath) -> Iterator[Leaf]:
         """Every value of the part and of the parts in it, with its path and its rule."""

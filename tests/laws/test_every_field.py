@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
-from slow_run import sampled
+from slow_run import ALL, sampled
 
 import eomgen
 from eomgen.mechanics.free_bodies.friction import SystemFriction
@@ -15,6 +16,7 @@ from eomgen.model import constraints, forces, joints
 from eomgen.model.part import Part
 from eomgen.proof import identities
 from eomgen.proof.trials import Trials
+from eomgen.robots.tables import toml_text
 
 pytestmark = pytest.mark.slow
 
@@ -486,6 +488,32 @@ def test_every_field_of_every_kind_is_derived_by_two_routes(name):
     checks = [*identities.compared(list(identities.routes(graph))), *trials.balance(), trials.free_bodies()]
     checks += [trials.friction()] if SystemFriction(system).exists else []
     assert [(check.name, check.detail) for check in checks if not check.ok] == []
+
+
+def spoiled(value: Any) -> Iterator[Any]:
+    """The tables, with one field of a part left out, or of a type that no field has."""
+    for key in value if isinstance(value, dict) else ():
+        yield {k: x for k, x in value.items() if k != key}
+        yield value | {key: []}
+        yield from (value | {key: changed} for changed in spoiled(value[key]))
+    if isinstance(value, list) and any(isinstance(x, dict) for x in value):
+        yield from ([*value[:k], changed, *value[k + 1 :]] for k, x in enumerate(value) for changed in spoiled(x))
+
+
+@pytest.mark.parametrize("part", range(4 if ALL else 1))
+def test_a_field_that_cannot_be_read_is_reported_by_name(part):
+    """Each example less one field, or with an empty list there: a model, or a ModelError that names places."""
+    for path in sorted(EXAMPLES.glob("*.toml"))[part :: 4 if ALL else 12]:
+        tables = tomllib.loads(path.read_text(encoding="utf-8"))
+        for table in tables.keys() & {"bodies", "constraints", "forces", "states"}:
+            for changed in spoiled(tables[table]):
+                text = toml_text(tables | {table: changed})
+                try:
+                    eomgen.loads(text)
+                except eomgen.ModelError as error:
+                    assert error.problems, text
+                except Exception as error:
+                    raise AssertionError(text) from error
 
 
 def parts_in(value: Any) -> Iterator[Part]:

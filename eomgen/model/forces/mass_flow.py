@@ -46,6 +46,8 @@ class MassFlow(Force):
 
     def diagnostics(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
         """Diagnostics of a point of the ground, and of two flows that both take the rest of a body's mass."""
+        if self.point is None:
+            return
         if not self.body:
             what = f"the mass of '{path[1]}' flows at '{self.point}', which is no point of a body"
             yield Diagnostic((*path, "point"), what, 'name a point of the body: point = "rocket.nozzle"')
@@ -53,7 +55,7 @@ class MassFlow(Force):
         for name, other in catalog.table("forces").items() if self.rate is None else ():
             if name == path[1]:
                 return
-            if isinstance(other, MassFlow) and other.rate is None and other.body == self.body:
+            if isinstance(other, MassFlow) and other.point and other.rate is None and other.body == self.body:
                 what = f"'{name}' and '{path[1]}' both take what is left of the rate of the mass of '{self.body}'"
                 yield Diagnostic((*path, "rate"), what, "give the `rate` of all of them but one", key=True)
 

@@ -120,7 +120,8 @@ class Path(Joint):
     @property
     def friction(self) -> FrictionLaw | None:
         """The friction of its piece, where it has only one."""
-        return self.pieces[0].friction if len(self.pieces) == 1 else None
+        pieces = self.pieces or ()
+        return pieces[0].friction if len(pieces) == 1 else None
 
     def diagnostics(self, path: FilePath, catalog: Catalog) -> Iterator[Diagnostic]:
         """Diagnostics of pieces that are neither a line nor an arc, or both."""

@@ -195,8 +195,9 @@ def _tension(scene: OutputContext, call: Call) -> Scalar:
     name, strand = call.name_at(0), call.args[1:]
     if scene.is_truss(name):
         return scene.reactions.member(name, *_ends(call))
-    number = strand[0].literal if strand and isinstance(strand[0], Expression) else None
-    if (strand and not isinstance(number, int)) or len(strand) > 1:
+    literal = strand[0].literal if strand and isinstance(strand[0], Expression) else None
+    number = literal if isinstance(literal, int) else None
+    if (strand and number is None) or len(strand) > 1:
         raise DerivationError(
             f"'{call}': the second argument is the number of the strand, from 1", fix="tension(string, 1)"
         )
