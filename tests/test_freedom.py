@@ -13,7 +13,7 @@ from eomgen.documents import rendered
 from eomgen.mechanics.constraints.rank import Freedom
 from eomgen.proof.degrees_of_freedom import counted_otherwise, lines_otherwise, standing_otherwise
 from eomgen.results.declared import check_document
-from eomgen.study.checked import checked_model
+from eomgen.study.checked import Checked
 
 HEAD = """
 eomgen = 1
@@ -183,7 +183,7 @@ def test_a_tie_that_closes_in_some_rows_and_reacts_in_others_says_which():
 def test_a_count_that_is_another_one_is_contradicted_by_the_rank_of_differences():
     """f = nu - rank J of (phi+ - phi-)/2h; the rows that are not redundant are as many as the rank."""
     model = eomgen.loads(HEAD + FOUR_BAR + HINGE + MIDDLE + coordinates(q1=1.0, q2=0.1, q3=1.0, q4=1.0))
-    checked = checked_model(model)
+    checked = Checked.of(model)
     found = checked.freedom
     assert counted_otherwise(checked) == ""
     first = found.redundant[0]
@@ -210,7 +210,7 @@ joint = { kind = "placed", at = ["0.4*cos(psi)", "0.4*sin(psi)", 1], angle = "ps
 low = { kind = "pin", points = ["door.low"], axis = [0, 0, 1] }
 high = { kind = "pin", points = ["door.high"], axis = [0, 0, 1] }
 """)
-    checked = checked_model(door)
+    checked = Checked.of(door)
     found = checked.freedom
     assert len(found.redundant) == 5 and counted_otherwise(checked) == ""
     fewer = replace(checked, freedom=replace(found, redundant=found.redundant[1:]))
@@ -219,7 +219,7 @@ high = { kind = "pin", points = ["door.high"], axis = [0, 0, 1] }
 
 def test_a_count_that_is_printed_or_told_otherwise_is_seen():
     """Lines and entries of `check` say the degrees of freedom, the rows and their constraints that were found"""
-    found = checked_model(eomgen.loads(HEAD + FOUR_BAR + HINGE + MIDDLE + coordinates(q1=1.0, q2=0.1, q3=1.0, q4=1.0)))
+    found = Checked.of(eomgen.loads(HEAD + FOUR_BAR + HINGE + MIDDLE + coordinates(q1=1.0, q2=0.1, q3=1.0, q4=1.0)))
     document = check_document(found.model)
     lines, reported = document.steps[0].statements[0].lines, document.entries()
     assert reported["ok"] and lines_otherwise(lines, reported, found) == ""
@@ -250,7 +250,7 @@ def test_how_a_structure_stands_is_the_rank_of_its_reactions_in_doubles():
 
     beam = f"{HEAD}[bodies.b]\npoints = {{ A = [0, 0], B = [2, 0] }}\n[constraints]\n"
     pins = "".join(f'{x} = {{ kind = "pin", points = ["b.{x}"] }}\n' for x in "AB")
-    checked = checked_model(eomgen.loads(beam + pins))
+    checked = Checked.of(eomgen.loads(beam + pins))
     structure = checked.structure
     assert structure is not None and structure.indeterminacy == 1 and standing_otherwise(checked) == ""
     names = ("system", "at", "unknowns", "pushes", "columns", "mobility", "rank")
@@ -279,9 +279,9 @@ def test_a_hinge_with_its_axis_in_a_body_turns_with_it():
     fixed = eomgen.loads(HINGED.replace("AXIS", "[0, 1, 0]"))
     own = eomgen.loads(HINGED.replace("AXIS", '[0, 1, 0], axes = "door"'))
     assert (Freedom.of(fixed).by_rank, Freedom.of(own).by_rank) == (1, 2)
-    (warning,) = checked_model(fixed).cautions
+    (warning,) = Checked.of(fixed).cautions
     assert "leaves 1 degree of freedom" in warning.what and warning.fix.endswith('it leaves 2: axes = "door"')
-    assert checked_model(own).cautions == ()
+    assert Checked.of(own).cautions == ()
     without = eomgen.loads(HINGED.partition("constraints.")[0])
     rates = [eomgen.derive(m).rhs("numpy")(0, [0.7, 0.4, 1, 0.3], []) for m in (own, without)]
     assert rates[0] == pytest.approx(rates[1])
@@ -308,7 +308,7 @@ constraints.bowl = { kind = "rolling", body = "ball", circle = { at = "C", radiu
 
 def test_a_bowl_without_inside_is_warned_of():
     """|c - C| = 0.85 < R: it would come to lie below the bowl; with `inside`, or on a hill, nothing is said."""
-    (warning,) = checked_model(eomgen.loads(BOWL)).cautions
+    (warning,) = Checked.of(eomgen.loads(BOWL)).cautions
     assert "'ball' starts within the circle of 'bowl'" in warning.what and "inside = true" in warning.fix
-    assert checked_model(eomgen.loads(BOWL.replace("false", "true"))).cautions == ()
-    assert checked_model(eomgen.loads(BOWL.replace("y = 0.15", "y = -0.15"))).cautions == ()
+    assert Checked.of(eomgen.loads(BOWL.replace("false", "true"))).cautions == ()
+    assert Checked.of(eomgen.loads(BOWL.replace("y = 0.15", "y = -0.15"))).cautions == ()

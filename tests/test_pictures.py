@@ -10,12 +10,12 @@ from slow_run import sampled
 
 import eomgen
 from eomgen.documents.drawing import limits
-from eomgen.documents.figures import four_figures, scale_of
+from eomgen.documents.figures import Scale, four_figures
 from eomgen.documents.scene_pictures import drawing_at_rest
 from eomgen.model.reader import loads
 from eomgen.results.mass_properties.result import values_at_start
 from eomgen.scene import forms, plane_strokes
-from eomgen.scene.making import is_freer_outward, scene_of, scene_of_inertia
+from eomgen.scene.making import DrawnArrow, scene_of, scene_of_inertia
 from eomgen.scene.scene import Mark
 from eomgen.scene.strokes import PictureSizes, SceneNumbers
 from eomgen.study import StateInNumbers
@@ -42,7 +42,7 @@ POST = np.array([[2.0, 0.0], [2.0, 3.0]])
 )
 def test_all_forces_of_a_picture_are_in_one_unit_with_four_figures(values, texts):
     """41930 N and 6000 N are 41.93 kN and 6 kN: the prefix is that of the largest."""
-    scale = scale_of(values)
+    scale = Scale.of(values)
     assert tuple(scale.text(value, "N") for value in values) == texts
 
 
@@ -55,12 +55,12 @@ def test_a_label_has_no_power_of_ten_where_it_is_short_without(value, text):
 def test_an_arrow_is_drawn_on_the_side_where_it_meets_fewer_lines():
     """A load at the lower chord under a post hangs below it; a push on the chord's end stays outside."""
     lines = [CHORD, POST]
-    assert is_freer_outward(lines, (2.0, 0.0), (0.0, -1.0))  # down, else it would run up along the post
-    assert not is_freer_outward(lines, (2.0, 0.0), (0.0, 1.0))  # up, from below
-    assert is_freer_outward(lines, (0.0, 0.0), (-1.0, 0.0))  # to the left, else it would lie in the chord
-    assert not is_freer_outward(lines, (0.0, 0.0), (1.0, 0.0))
-    assert not is_freer_outward([CHORD], (2.0, 0.0), (0.0, -1.0))  # a free beam carries its load on top
-    assert is_freer_outward([CHORD, UPPER], (2.0, 0.0), (0.0, -1.0))  # else it would cross the upper chord
+    assert DrawnArrow.is_freer_outward(lines, (2.0, 0.0), (0.0, -1.0))  # down, else it would run up along the post
+    assert not DrawnArrow.is_freer_outward(lines, (2.0, 0.0), (0.0, 1.0))  # up, from below
+    assert DrawnArrow.is_freer_outward(lines, (0.0, 0.0), (-1.0, 0.0))  # to the left, else it would lie in the chord
+    assert not DrawnArrow.is_freer_outward(lines, (0.0, 0.0), (1.0, 0.0))
+    assert not DrawnArrow.is_freer_outward([CHORD], (2.0, 0.0), (0.0, -1.0))  # a free beam carries its load on top
+    assert DrawnArrow.is_freer_outward([CHORD, UPPER], (2.0, 0.0), (0.0, -1.0))  # else it would cross the upper chord
 
 
 def test_a_spring_is_a_zigzag_from_end_to_end():

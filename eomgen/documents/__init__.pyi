@@ -48,13 +48,9 @@ from eomgen.documents.document import plain_document as plain_document
 
 # The document with symbols for names that are not the model's: of its reactions
 from eomgen.documents.document import with_symbols as with_symbols
-from eomgen.documents.drawing import INK as INK
 
-# The names of one panel
-from eomgen.documents.drawing import NamesArtist as NamesArtist
-
-# A name and its place
-from eomgen.documents.drawing import PlacedName as PlacedName
+# Writes words at places of a panel, where they cover no line and no other
+from eomgen.documents.drawing import add_names as add_names
 
 # One stroke, in its layer
 from eomgen.documents.drawing import artist_of as artist_of
@@ -106,9 +102,6 @@ from eomgen.documents.figures import reactions_by_unit as reactions_by_unit
 
 # One of the pictures of a run
 from eomgen.documents.figures import run_picture as run_picture
-
-# The scale for the largest of some values: kN from 10 kN on; units without prefix where all are 0
-from eomgen.documents.figures import scale_of as scale_of
 
 # The expressions of the payload as texts
 from eomgen.documents.json_form import Texts as Texts
@@ -277,9 +270,6 @@ from eomgen.documents.scene_pictures import Sketch as Sketch
 # A scene in space on matplotlib axes; `show` sets it to another of its frames
 from eomgen.documents.scene_pictures import SpacePicture as SpacePicture
 
-# A sketch on matplotlib axes, which have equal scales and no frame
-from eomgen.documents.scene_pictures import draw_model as draw_model
-
 # A scene at its first frame, on matplotlib axes with equal scales and no frame
 from eomgen.documents.scene_pictures import draw_scene as draw_scene
 
@@ -288,9 +278,6 @@ from eomgen.documents.scene_pictures import drawing_at_rest as drawing_at_rest
 
 # A scene at the first frame of its drawing, on its page
 from eomgen.documents.scene_pictures import flat_drawing as flat_drawing
-
-# A name written along a line; the others keep off it
-from eomgen.documents.scene_pictures import name_along as name_along
 
 # Height over width of the page of a drawing
 from eomgen.documents.scene_pictures import page_shape as page_shape

@@ -421,3 +421,9 @@ class NamesArtist(Artist):
         text.set_position(tuple(a + share * (b - a) + away * np.array([-e[1], e[0]])))
         text.set(ha="center", va="center", rotation=math.degrees(math.atan2(e[1], e[0])), rotation_mode="anchor")
         return tuple(boxes)
+
+
+def add_names(panel: Any, words: Sequence[tuple[str, tuple[float, float]]], lines: Sequence[np.ndarray]) -> None:
+    """Writes words at places of a panel, those that come first the nearest, where they cover no line and no other."""
+    names = [PlacedName(text, place, INK, 8.0, rank) for rank, (text, place) in enumerate(words) if text]
+    panel.add_artist(NamesArtist(names, lines))

@@ -161,6 +161,14 @@ class Scale:
     factor: float = 1.0
     prefix: str = ""
 
+    @staticmethod
+    def of(values: Iterable[float]) -> Scale:
+        """The scale for the largest of some values: kN from 10 kN on; units without prefix where all are 0."""
+        largest = max((abs(value) for value in values), default=0.0)
+        if not largest or ROOMY > largest >= 0.1:
+            return Scale()
+        return next((Scale(*pair) for pair in PREFIXES if largest >= ROOMY * pair[0]), Scale(*PREFIXES[-1]))
+
     def __call__(self, value: float) -> float:
         """A value in SI, in these units."""
         return value / self.factor
@@ -176,14 +184,6 @@ class Scale:
     def text(self, value: float, unit: str) -> str:
         """A value in SI as "41.93 kN"."""
         return f"{self.number(value)} {self.unit(unit)}"
-
-
-def scale_of(values: Iterable[float]) -> Scale:
-    """The scale for the largest of some values: kN from 10 kN on; units without prefix where all are 0."""
-    largest = max((abs(value) for value in values), default=0.0)
-    if not largest or ROOMY > largest >= 0.1:
-        return Scale()
-    return next((Scale(*pair) for pair in PREFIXES if largest >= ROOMY * pair[0]), Scale(*PREFIXES[-1]))
 
 
 def four_figures(value: float) -> str:

@@ -515,33 +515,35 @@ class Sketch:
     def notation(self) -> Notation:
         return notation_of(self.system.scope.model).with_symbols(self.letters)
 
+    @property
+    def corners(self) -> tuple[np.ndarray, np.ndarray]:
+        """The lower left and the upper right end of its drawing in the plane."""
+        return limits(self.drawing)
 
-def draw_model(panel: Any, sketch: Sketch, *, names: bool = True) -> None:
-    """A sketch on matplotlib axes, which have equal scales and no frame.
+    def draw(self, panel: Any, *, names: bool = True) -> None:
+        """Draws it on matplotlib axes, which have equal scales and no frame.
 
-    Args:
-        names: bodies, points and arrows are named.
-    """
-    if not sketch.plane:
-        draw_space(panel, sketch.drawing, sketch.notation, sketch.colors)
-        return
-    before = panel.dataLim.get_points() if panel.has_data() else None
-    draw(panel, sketch.drawing, sketch.notation, names=names, colors=sketch.colors)
-    corners = np.array(limits(sketch.drawing))
-    panel.dataLim.set_points(corners)
-    if before is not None:
-        panel.dataLim.update_from_data_xy(before, ignore=False)
-    panel.autoscale(True)  # what is drawn outside of it is included
-    panel.margins(0.0)
+        Args:
+            names: bodies, points and arrows are named.
+        """
+        if not self.plane:
+            draw_space(panel, self.drawing, self.notation, self.colors)
+            return
+        before = panel.dataLim.get_points() if panel.has_data() else None
+        draw(panel, self.drawing, self.notation, names=names, colors=self.colors)
+        panel.dataLim.set_points(np.array(self.corners))
+        if before is not None:
+            panel.dataLim.update_from_data_xy(before, ignore=False)
+        panel.autoscale(True)  # what is drawn outside of it is included
+        panel.margins(0.0)
 
-
-def name_along(panel: Any, text: str, ends: Sequence[Any], color: str) -> None:
-    """A name written along a line of the page; the others keep off it."""
-    (x, y), (u, v) = ends
-    if text:
-        shown = [artist for artist in panel.artists if isinstance(artist, NamesArtist)]
-        names = shown[0] if shown else panel.add_artist(NamesArtist([], []))
-        names.add(PlacedName(text, (float(x), float(y)), color, 8.0, -1, (float(u), float(v))))
+    def name_along(self, panel: Any, text: str, ends: Sequence[Any], of: str) -> None:
+        """Writes a name along a line of the page, in the colour of a member; the others keep off it."""
+        (x, y), (u, v) = ends
+        if text:
+            shown = [artist for artist in panel.artists if isinstance(artist, NamesArtist)]
+            names = shown[0] if shown else panel.add_artist(NamesArtist([], []))
+            names.add(PlacedName(text, (float(x), float(y)), self.colors[of], 8.0, -1, (float(u), float(v))))
 
 
 # -------- drawing on a page ------------------------------------------------------------------------------------

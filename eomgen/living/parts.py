@@ -33,7 +33,7 @@ from eomgen.proof import Certificate
 from eomgen.questions import reactions_document, solve
 from eomgen.resources import growing, patience, seldom_from_now_on
 from eomgen.results import kinematics, statics
-from eomgen.study import checked_model, model_to_study
+from eomgen.study import Checked, model_to_study
 from eomgen.symbolic.expression import Expression
 from eomgen.symbolic.numeric import NoValue
 from eomgen.verbs import typed
@@ -211,7 +211,7 @@ class WrittenModel:
         return str(model_svg(self.studied))
 
     def _degrees_of_freedom(self) -> tuple[int | None, tuple[Problem, ...]]:
-        found = checked_model(self.studied)
+        found = Checked.of(self.studied)
         return found.freedom.by_rank if self.model.coordinates else found.mobility, found.cautions
 
     def _equations(self) -> dict[str, Any]:

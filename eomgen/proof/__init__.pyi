@@ -119,9 +119,6 @@ from eomgen.proof.posed_model import branches_otherwise as branches_otherwise
 # Formulas as they are printed
 from eomgen.proof.printed import Printed as Printed
 
-# A force, or a couple, as it leaves, ground axes
-from eomgen.proof.reported_cuts import ReportedForce as ReportedForce
-
 # Reported derivation of one reaction by virtual work
 from eomgen.proof.reported_cuts import ReportedWork as ReportedWork
 

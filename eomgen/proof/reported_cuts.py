@@ -53,16 +53,20 @@ class ReportedForce:
 
 
 def cuts_reported(
-    system: System, equations: EquationsOfMotion | None, numbers: Mapping[Node, float], pushes: Sequence[ReportedForce]
+    system: System,
+    equations: EquationsOfMotion | None,
+    numbers: Mapping[Node, float],
+    pushes: Iterable[tuple[str, str, str, np.ndarray, np.ndarray | None, np.ndarray | None]],
 ) -> Iterator[Check]:
     """Checks of the forces on all bodies at a state.
 
     Args:
         equations: of motion; None where nothing moves.
         numbers: t, q, u, the parameters and the unknowns of loads.
+        pushes: (body, name, kind, place, force, couple) of each force as it leaves.
     """
     known = with_inputs(system, {x: fifty_digits().number(float(v)) for x, v in numbers.items()})
-    proof = _Cut(system, known, equations, tuple(pushes))
+    proof = _Cut(system, known, equations, tuple(ReportedForce(*push) for push in pushes))
     return iter((*proof.equilibrium(), *proof.opposites(), *proof.loads(), *proof.inertia()))
 
 

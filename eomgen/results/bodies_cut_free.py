@@ -26,7 +26,7 @@ from eomgen.documents import (
 from eomgen.frozen import dataclass
 from eomgen.mechanics.free_bodies import ForceKind
 from eomgen.model import AtRest, ModelOrPath, Requests, Values, WrittenEquation
-from eomgen.proof import Certificate, ReportedForce, certify, cuts_reported
+from eomgen.proof import Certificate, certify, cuts_reported
 from eomgen.resources import doing
 from eomgen.results.at_rest.steps import letter_of_load, letter_of_reaction
 from eomgen.scene import (
@@ -34,12 +34,10 @@ from eomgen.scene import (
     DrawnArrow,
     SceneNumbers,
     drawing_of,
-    is_freer_outward,
-    never_short,
     scene_of_cut_body,
     scene_of_system,
 )
-from eomgen.study import CutState, NumberedForce, cut_state, model_to_study
+from eomgen.study import CutState, model_to_study
 from eomgen.symbolic.expression import Vector, is_zero
 from eomgen.symbolic.print import Notation, Setter, Symbol, text_size, to_text
 
@@ -106,16 +104,17 @@ class FreeBodies(Result):
     def bodies(self) -> dict[str, FreeBody]:
         """Each body by its name, in the order of the model, with what acts on it."""
         found: dict[str, list[BodyForce]] = {link.name: [] for link in self.state.system.motion.links}
-        for each in self.state.forces:
-            found[each.push.body].append(self._force(each))
+        for k, each in enumerate(self.state.forces):
+            found[each.push.body].append(self._force(k))
         return {name: FreeBody(name, tuple(forces)) for name, forces in found.items() if forces}
 
-    def _force(self, each: NumberedForce) -> BodyForce:
+    def _force(self, k: int) -> BodyForce:
+        each = self.state.forces[k]
         push, count = each.push, 2 if self.state.system.scope.model.space == "plane" else 3
         direction = each.direction if push.turns else each.direction[:count]
         value = None if self.state.drawn.assumed else each.value
         unit = NEWTON_METER if push.turns else NEWTON
-        letter = letter_of_force(self.state, each)
+        letter = letter_of_force(self.state, k)
         at, way = tuple(each.at[:count].tolist()), tuple(direction.tolist())
         return BodyForce(push.name, at, way, value, push.kind, unit, letter, push.has_sense)
 
@@ -133,8 +132,14 @@ class FreeBodies(Result):
         state = self.state
         equations = None if state.rests else state.study.equations
         base = Certificate(()) if equations is None else certify(equations)
-        reported = [_reported(each) for each in state.forces]
-        return base + cuts_reported(state.system, equations, state.begun_with_unknowns, reported)
+        return base + cuts_reported(state.system, equations, state.begun_with_unknowns, self._reported())
+
+    def _reported(self) -> Iterator[tuple[str, str, str, np.ndarray, np.ndarray | None, np.ndarray | None]]:
+        """(body, name, kind, place, force, couple) of each force, as the proof reads it."""
+        for each in self.state.forces:
+            push, vector = each.push, None if each.value is None else each.value * each.direction
+            force, couple = (np.zeros(3), vector) if push.turns else (vector, np.zeros(3))
+            yield push.body, push.name, push.kind, each.at, force, couple
 
     @cached_property
     def derivation(self) -> Document:
@@ -158,13 +163,6 @@ class FreeBodies(Result):
         }
 
 
-def _reported(each: NumberedForce) -> ReportedForce:
-    """A force as the proof reads it."""
-    push, vector = each.push, None if each.value is None else each.value * each.direction
-    force, couple = (np.zeros(3), vector) if push.turns else (vector, np.zeros(3))
-    return ReportedForce(push.body, push.name, push.kind, each.at, force, couple)
-
-
 @doing("the free bodies")
 def free_bodies(
     model: ModelOrPath,
@@ -185,7 +183,7 @@ def free_bodies(
     model = model_to_study(model, parameters, start)
     if isinstance(at, str):
         at = AtRest() if at.strip() == AtRest.text else Requests(model).equation(at)
-    found = FreeBodies(cut_state(model, at))
+    found = FreeBodies(CutState.of(model, at))
     _ = found.bodies  # what cannot be cut free is refused here
     return found
 
@@ -264,10 +262,10 @@ def _arrows(forces: Sequence[BodyForce], lines: Sequence[np.ndarray], extent: fl
     largest = max((abs(force.value or 0.0) for force in forces if not force.turns), default=0.0) or 1.0
     for force in forces:
         size = largest if force.value is None or force.turns else abs(force.value)
-        way = never_short(size, largest, SHORTEST) * np.array(force.direction)
+        way = DrawnArrow.never_short(size, largest, SHORTEST) * np.array(force.direction)
         at = (force.at[0], force.at[1])
         x, y = (float(v) for v in ARROW * extent * way[:2])
-        outward = not lines or not is_freer_outward(lines, at, (-x, -y))
+        outward = not lines or not DrawnArrow.is_freer_outward(lines, at, (-x, -y))
         role = "reaction" if force.kind == ForceKind.REACTION else "force"
         yield DrawnArrow(force.name, force.at, way, role, force.name, force.turns, outward)
 
@@ -275,9 +273,9 @@ def _arrows(forces: Sequence[BodyForce], lines: Sequence[np.ndarray], extent: fl
 # -------- letters ---------------------------------------------------------------------------------------------
 
 
-def letter_of_force(state: CutState, numbered: NumberedForce) -> str:
+def letter_of_force(state: CutState, k: int) -> str:
     """The letter of a force in LaTeX: of a reaction as derivations have it, of a load its formula where it is short."""
-    push, notation = numbered.push, notation_of(state.system.scope.model)
+    push, notation = state.forces[k].push, notation_of(state.system.scope.model)
     if push.kind == ForceKind.INERTIA:
         return r"-I\,\alpha" if push.turns else r"-m\,a"
     if push.shares:

@@ -24,7 +24,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion
 from eomgen.model import Model
 from eomgen.proof import branches_otherwise, counted_otherwise, lines_otherwise
-from eomgen.study import Checked, checked_model, model_to_study
+from eomgen.study import Checked, model_to_study
 from eomgen.symbolic.exact import book_form, equal_at_random_states
 from eomgen.symbolic.expression import Graph, Scalar, symbols_of
 from eomgen.symbolic.numeric import Work, transplanted
@@ -37,7 +37,7 @@ from eomgen.symbolic.print import to_text
 def check_document(model: Model) -> Document:
     """The model's parts and its degrees of freedom, by rank and by the counting formula."""
     model = model_to_study(model)
-    found = checked_model(model)
+    found = Checked.of(model)
     lines = [*_declared_lines(found), *_freedom_lines(found), *_start_lines(found), *_rest_lines(found)]
     reported = {**_declared(found), **_counted(found), **_started(found)}
     wrong = counted_otherwise(found) or branches_otherwise(found) or lines_otherwise(lines, reported, found)

@@ -35,14 +35,8 @@ from eomgen.scene.making import axis_marks as axis_marks
 # Marks of centres, of rotation or of mass, by their names
 from eomgen.scene.making import center_marks as center_marks
 
-# True if an arrow on the page that begins at its place meets fewer lines than one that ends there
-from eomgen.scene.making import is_freer_outward as is_freer_outward
-
 # Every named point of the ground and of bodies by its whole name, ground axes [m]
 from eomgen.scene.making import named_points as named_points
-
-# Length of an arrow in a picture without a scale: 1 of the largest, never below `shortest`
-from eomgen.scene.making import never_short as never_short
 
 # Scene of a model
 from eomgen.scene.making import scene_of as scene_of

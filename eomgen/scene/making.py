@@ -373,6 +373,19 @@ class DrawnArrow:
     outward: bool = False
     unit: str = "1"
 
+    @staticmethod
+    def never_short(size: float, largest: float, shortest: float) -> float:
+        """Length of an arrow in a picture without a scale: 1 of the largest, never below `shortest`."""
+        return shortest + (1 - shortest) * min(1.0, size / largest)
+
+    @staticmethod
+    def is_freer_outward(lines: Iterable[np.ndarray], at: Sequence[float], vector: Sequence[float]) -> bool:
+        """True if an arrow on the page that begins at its place meets fewer lines than one that ends there."""
+        pieces = [piece for line in lines for piece in pairwise(line)]
+        place, stroke = np.array(at), np.array(vector)
+        begun, ended = (sum(_meets(a, b, place, s) for a, b in pieces) for s in (stroke, -stroke))
+        return begun < ended
+
 
 def arrow_marks(arrows: Iterable[DrawnArrow]) -> Iterator[Mark]:
     """The marks of arrows; of a zero vector its name at its place."""
@@ -400,14 +413,6 @@ def exact_vector(place: Place) -> Vector:
     return place if isinstance(place, Vector) else Vector(Fraction(float(x)) for x in [*place, 0.0][:3])
 
 
-def is_freer_outward(lines: Iterable[np.ndarray], at: Sequence[float], vector: Sequence[float]) -> bool:
-    """True if an arrow on the page that begins at its place meets fewer lines than one that ends there."""
-    pieces = [piece for line in lines for piece in pairwise(line)]
-    place, stroke = np.array(at), np.array(vector)
-    begun, ended = (sum(_meets(a, b, place, s) for a, b in pieces) for s in (stroke, -stroke))
-    return begun < ended
-
-
 def _meets(a: np.ndarray, b: np.ndarray, at: np.ndarray, stroke: np.ndarray) -> bool:
     """True if a stroke from a place runs along the piece a b, or crosses it further on."""
     along, away = b - a, at - a
@@ -422,11 +427,6 @@ def _meets(a: np.ndarray, b: np.ndarray, at: np.ndarray, stroke: np.ndarray) -> 
     on_piece = (away[0] * stroke[1] - away[1] * stroke[0]) / turn
     on_stroke = (away[0] * along[1] - away[1] * along[0]) / turn
     return bool(0 <= on_piece <= 1 and CLEAR < on_stroke <= 1)
-
-
-def never_short(size: float, largest: float, shortest: float) -> float:
-    """Length of an arrow in a picture without a scale: 1 of the largest, never below `shortest`."""
-    return shortest + (1 - shortest) * min(1.0, size / largest)
 
 
 def scene_with(scene: Scene, marks: Iterable[Mark]) -> Scene:

@@ -3,20 +3,11 @@
 # Results of checking a model without mistakes
 from eomgen.study.checked import Checked as Checked
 
-# Checks a model: degrees of freedom, redundancy, closure of loops, cautions
-from eomgen.study.checked import checked_model as checked_model
-
 # The centrodes of a body in numbers
 from eomgen.study.instant import CentrodeCurves as CentrodeCurves
 
 # The bodies of a model at one instant, cut free
 from eomgen.study.instant import CutState as CutState
-
-# A force or couple on a body that is cut free, in numbers
-from eomgen.study.instant import NumberedForce as NumberedForce
-
-# The bodies of a model at its start, where an equation is first met, or in equilibrium
-from eomgen.study.instant import cut_state as cut_state
 
 # The motion of a model at an instant, however the model gives it
 from eomgen.study.instant import kinematic_state as kinematic_state

@@ -53,6 +53,35 @@ class Checked:
     cautions: tuple[Problem, ...] = ()
     modes: ContactModes = field(default_factory=dict)
 
+    @staticmethod
+    def of(model: Model) -> Checked:
+        """Checks a model: degrees of freedom, redundancy, closure of loops, cautions.
+
+        Raises:
+            ModelError: declared speeds that do not stand for the rates.
+        """
+        modes = ContactsAtStart.of(model).modes
+        freedom = Freedom.of(model, modes)
+        still = not model.coordinates and bool(model.constraints or model.trusses)
+        start = _start_of_loops(model, modes, freedom)
+        return Checked(
+            model,
+            freedom,
+            tuple(name for name, mode in modes.items() if not mode.closed),
+            mobility=_mobility_of(model) if still else None,
+            structure=Structure.of(System.of(model, ContactsAtStart.at_rest(model))) if still else None,
+            start=start,
+            cautions=(
+                *_open(model, start),
+                *(_idle(model, modes) if model.coordinates else ()),
+                *_locked(model, freedom),
+                *_unhung(model),
+                *_stiff(model, modes, freedom),
+                *_misplaced(model),
+            ),
+            modes=modes,
+        )
+
     @property
     def missing(self) -> list[str]:
         """The parameters without a value."""
@@ -100,35 +129,6 @@ def freedom_of(
         DerivationError: a constraint that cannot hold; a dependent coordinate that no constraint determines.
     """
     return Freedom.of(model_at(model, parameters, start), modes)
-
-
-def checked_model(model: Model) -> Checked:
-    """Checks a model: degrees of freedom, redundancy, closure of loops, cautions.
-
-    Raises:
-        ModelError: declared speeds that do not stand for the rates.
-    """
-    modes = ContactsAtStart.of(model).modes
-    freedom = Freedom.of(model, modes)
-    still = not model.coordinates and bool(model.constraints or model.trusses)
-    start = _start_of_loops(model, modes, freedom)
-    return Checked(
-        model,
-        freedom,
-        tuple(name for name, mode in modes.items() if not mode.closed),
-        mobility=_mobility_of(model) if still else None,
-        structure=Structure.of(System.of(model, ContactsAtStart.at_rest(model))) if still else None,
-        start=start,
-        cautions=(
-            *_open(model, start),
-            *(_idle(model, modes) if model.coordinates else ()),
-            *_locked(model, freedom),
-            *_unhung(model),
-            *_stiff(model, modes, freedom),
-            *_misplaced(model),
-        ),
-        modes=modes,
-    )
 
 
 def _open(model: Model, start: LoopStart) -> tuple[Problem, ...]:

@@ -337,6 +337,32 @@ class CutState:
     when: str
     rests: bool
 
+    @staticmethod
+    def of(model: Model, at: WrittenEquation | AtRest | None = None) -> CutState:
+        """The bodies of a model at its start, where an equation is first met, or in equilibrium.
+
+        Raises:
+            MissingValues: an instant of a model whose parameters have no values.
+            DerivationError, RunFailed: there is no such instant.
+        """
+        if model.unknowns_in_loads():
+            study = study_of_modes(model)
+            return CutState(study, StateInNumbers.at_start(study.system), "at rest", True)
+        if at is None:
+            return _at_start(model)
+        if isinstance(at, AtRest):
+            moment, when = StateAtInstant.resting(study_at_rest(model)), "in equilibrium"
+        else:
+            moment, when = MotionFromStart(model, at_rest=False).until(at), f"when {at.text}"
+        system, missing = (
+            moment.phase.system,
+            [name for name in model.parameters if name not in model.exact_parameters()],
+        )
+        if missing or not moment.numbers:
+            raise MissingValues(tuple(missing) or ("the parameters",))
+        numbers = {**moment.phase.numeric_parameters, **moment.numbers}
+        return CutState(moment.phase, StateInNumbers.of(system, numbers), when, False)
+
     @property
     def system(self) -> System:
         return self.study.system
@@ -483,29 +509,6 @@ def _with_resultants(pushes: Sequence[NumberedForce]) -> list[NumberedForce]:
 def _plain(numbers: np.ndarray) -> np.ndarray:
     """Numbers without what rounding leaves."""
     return np.where(np.abs(numbers) < NOISE, 0.0, numbers)
-
-
-def cut_state(model: Model, at: WrittenEquation | AtRest | None = None) -> CutState:
-    """The bodies of a model at its start, where an equation is first met, or in equilibrium.
-
-    Raises:
-        MissingValues: an instant of a model whose parameters have no values.
-        DerivationError, RunFailed: there is no such instant.
-    """
-    if model.unknowns_in_loads():
-        study = study_of_modes(model)
-        return CutState(study, StateInNumbers.at_start(study.system), "at rest", True)
-    if at is None:
-        return _at_start(model)
-    if isinstance(at, AtRest):
-        moment, when = StateAtInstant.resting(study_at_rest(model)), "in equilibrium"
-    else:
-        moment, when = MotionFromStart(model, at_rest=False).until(at), f"when {at.text}"
-    system, missing = moment.phase.system, [name for name in model.parameters if name not in model.exact_parameters()]
-    if missing or not moment.numbers:
-        raise MissingValues(tuple(missing) or ("the parameters",))
-    numbers = {**moment.phase.numeric_parameters, **moment.numbers}
-    return CutState(moment.phase, StateInNumbers.of(system, numbers), when, False)
 
 
 def _at_start(model: Model) -> CutState:

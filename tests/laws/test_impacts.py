@@ -23,7 +23,7 @@ from eomgen.mechanics.impacts.law import lemke
 from eomgen.proof.impacts import Touched, after_impact, stepped_impact
 from eomgen.results import impact
 from eomgen.simulation.result import Trajectory
-from eomgen.study.checked import checked_model
+from eomgen.study.checked import Checked
 from eomgen.symbolic.expression import parse
 
 G = 9.81
@@ -653,7 +653,7 @@ def test_the_impact_of_a_closed_chain_is_that_of_its_run():
 
 def test_a_stop_that_is_open_at_the_start_is_none_of_the_loops_that_close_there():
     """`check` closes the pin alone, and says nothing of the stop but that it is open."""
-    found = checked_model(eomgen.loads(HEAD + CRANK))
+    found = Checked.of(eomgen.loads(HEAD + CRANK))
     assert found.start.refused == "" and found.open == ("piston_low",)
 
 

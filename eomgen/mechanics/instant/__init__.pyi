@@ -12,14 +12,8 @@ from eomgen.mechanics.instant.kinematic_state import Readable as Readable
 # Rigid bodies in motion in the plane, at one configuration
 from eomgen.mechanics.instant.mechanism import Mechanism as Mechanism
 
-# The centre of rotation of a pair of blocks
-from eomgen.mechanics.instant.mechanism import RotationCenter as RotationCenter
-
 # The centre of rotation of one body as its motion goes on
 from eomgen.mechanics.instant.motion_kind import Centrodes as Centrodes
-
-# The line on which a place runs
-from eomgen.mechanics.instant.motion_kind import Curve as Curve
 
 # The kinds of motion of the bodies of a system
 from eomgen.mechanics.instant.motion_kind import Kinds as Kinds

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
@@ -23,11 +23,10 @@ from eomgen.documents import (
     Step,
     data_step,
     document_of,
-    draw_model,
 )
 from eomgen.errors import MissingValues, RunFailed
 from eomgen.frozen import dataclass
-from eomgen.mechanics.instant import BodyMotion, Centrodes, Kinds, KinematicState, Mechanism, RotationCenter
+from eomgen.mechanics.instant import BodyMotion, Centrodes, Kinds, KinematicState, Mechanism
 from eomgen.model import ModelOrPath, Values, WrittenEquation, model_at
 from eomgen.proof import Certificate, certify, instant_checks
 from eomgen.resources import doing
@@ -156,7 +155,7 @@ class Kinematics(Result):
             "rate": None if state.symbol is None else {"symbol": state.symbol.name, "of": state.rate},
             "exact": state.exact,
             "blocks": {} if mechanism is None else {name: list(bodies) for name, bodies in mechanism.blocks.items()},
-            "centers": [] if mechanism is None else [self._center(c) for c in mechanism.centers.values()],
+            "centers": [] if mechanism is None else list(self._centers(mechanism)),
             "angular_velocities": {name: self._turn(field.w) for name, field in state.turning.items()},
             "velocities": {names: self._vector(v) for names, _, v, _ in state.points},
             **self._accelerations(),
@@ -177,17 +176,18 @@ class Kinematics(Result):
             "accelerations": {names: self._vector(a, exact) for names, _, _, a in self.state.points if a is not None},
         }
 
-    def _center(self, center: RotationCenter) -> dict[str, Any]:
-        x, y, _ = center.point
-        place = [self._value(x), self._value(y)]
-        found = self.state.found.get(center.pair)
-        return {
-            "bodies": list(center.pair),
-            "kind": "infinite" if center.at_infinity else "finite",
-            "place": None if center.at_infinity else place,
-            "direction": place if center.at_infinity else None,
-            "found": None if found is None else found.in_words(self.state.system.scope.model.constraints),
-        }
+    def _centers(self, mechanism: Mechanism) -> Iterator[dict[str, Any]]:
+        for center in mechanism.centers.values():
+            x, y, _ = center.point
+            place = [self._value(x), self._value(y)]
+            found = self.state.found.get(center.pair)
+            yield {
+                "bodies": list(center.pair),
+                "kind": "infinite" if center.at_infinity else "finite",
+                "place": None if center.at_infinity else place,
+                "direction": place if center.at_infinity else None,
+                "found": None if found is None else found.in_words(self.state.system.scope.model.constraints),
+            }
 
     def _turn(self, w: Vector, exact: bool = True) -> Any:
         return self._value(w[2], exact) if self.state.plane else self._vector(w, exact)
@@ -333,7 +333,7 @@ class _Panels:
             self._centrodes(below)
         panels = figure.subplot_mosaic(rooms, width_ratios=ratios, height_ratios=ratios)
         main = panels["mechanism"]
-        draw_model(main, self.sketch)
+        self.sketch.draw(main)
         main.set_adjustable("datalim")  # the projections stand exactly below it and to its side
         figure.canvas.draw()
         self._along_x(panels["y"], main.get_xlim())

@@ -27,13 +27,11 @@ from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.instant import (
     BodyMotion,
     Centrodes,
-    Curve,
     Kinds,
     KinematicState,
     Mechanism,
     Quantities,
     Readable,
-    RotationCenter,
 )
 from eomgen.symbolic.exact import book_form, vanishes
 from eomgen.symbolic.expression import Fraction, Node, Scalar, Vector, is_zero, over, sqrt
@@ -121,8 +119,7 @@ def _of_kind(motion: BodyMotion) -> Iterator[Piece]:
         yield from (", across " if kind.name == "plane motion" else ", along ", *_place(kind.axis, 3))
     if kind.is_helical and kind.pitch is not None:
         yield from (", advancing ", _formula(kind.pitch), " per radian")
-    if kind.way is not None:
-        yield from _way(kind.way)
+    yield from _way(motion)
 
 
 def _of_particle(motion: BodyMotion) -> Iterator[Piece]:
@@ -133,11 +130,14 @@ def _of_particle(motion: BodyMotion) -> Iterator[Piece]:
         return
     words = {"line": "a point on a straight line", "circle": "a point on a circle", "curve": "a point on a curve"}
     yield words[kind.way.kind]
-    yield from _way(kind.way)
+    yield from _way(motion)
 
 
-def _way(way: Curve) -> Iterator[Piece]:
+def _way(motion: BodyMotion) -> Iterator[Piece]:
     """Words on the direction of a straight path, or the radius of a circular one."""
+    way = None if motion.kind is None else motion.kind.way
+    if way is None:
+        return
     if way.kind == "line" and way.along is not None:
         yield from (" along ", *_place(way.along))
     if way.kind == "circle" and way.radius is not None:
@@ -215,17 +215,17 @@ def centrodes_step(found: Sequence[Centrodes], positive: frozenset[Node]) -> tup
     for centrodes in found:
         words = f"{centrodes.body}: its centre of rotation in the axes of the ground, and in its own:"
         statements.append(prose(words))
-        places, curves = (centrodes.fixed, centrodes.moving), (centrodes.fixed_curve, centrodes.moving_curve)
-        for of, place, curve in zip(("", f"{centrodes.body}"), places, curves, strict=True):
+        for of, place in (("", centrodes.fixed), (centrodes.body, centrodes.moving)):
             owner = f"C, {of}" if of else "C"
             statements += [Formula((Name(axis, owner), x)) for axis, x in zip("xy", place, strict=False)]
-            if curve.kind in ("line", "circle"):
-                statements.append(prose("a ", *equation_of(curve, positive), "."))
+            if equation := equation_of(centrodes, positive, own=bool(of)):
+                statements.append(prose("a ", *equation, "."))
     return (Step("centrodes", "Centrodes", tuple(statements)),) if statements else ()
 
 
-def equation_of(curve: Curve, positive: frozenset[Node]) -> tuple[Piece, ...]:
-    """A line or circle by its equation."""
+def equation_of(centrodes: Centrodes, positive: frozenset[Node], *, own: bool) -> tuple[Piece, ...]:
+    """A line or circle by its equation, in the ground or in the body's own axes; () of any other curve."""
+    curve = centrodes.moving_curve if own else centrodes.fixed_curve
     if curve.kind == "circle" and curve.at is not None and curve.radius is not None:
         return ("circle about ", *_place(curve.at), ", radius ", _formula(curve.radius))
     if curve.kind == "line" and curve.at is not None and curve.along is not None:
@@ -237,7 +237,7 @@ def equation_of(curve: Curve, positive: frozenset[Node]) -> tuple[Piece, ...]:
         if is_zero(slope):
             return ("straight line y = ", _formula(offset))
         return ("straight line of slope ", _formula(slope), " through (0, ", _formula(offset), ")")
-    return (f"{'straight line' if curve.kind == 'line' else curve.kind}",)
+    return {"line": ("straight line",), "circle": ("circle",)}.get(curve.kind, ())
 
 
 def _payload(motion: BodyMotion, centrodes: Centrodes | None) -> dict[str, Any]:
@@ -474,9 +474,9 @@ def _blocks(state: KinematicState) -> list[Statement]:
 
 def _centers(state: KinematicState, mechanism: Mechanism) -> Step:
     constraints = state.system.scope.model.constraints
-    known = [(mechanism.centers[pair], each.in_words(constraints)) for pair, each in state.found.items()]
-    left = [(center, "by the velocities") for pair, center in mechanism.centers.items() if pair not in state.found]
-    rows = tuple((center.name, *place_cells(state, center), how) for center, how in (*known, *left))
+    known = [(pair, each.in_words(constraints)) for pair, each in state.found.items()]
+    left = [(pair, "by the velocities") for pair in mechanism.centers if pair not in state.found]
+    rows = tuple((mechanism.centers[k].name, *_place_of(state, mechanism, k), how) for k, how in (*known, *left))
     theory = (
         "(0, i) is the point about which body i turns, (i, j) the point at which bodies i and j have one velocity. A "
         "hinge is the centre of its two bodies; a force of a constraint between two bodies passes through theirs; "
@@ -493,8 +493,9 @@ def _centers(state: KinematicState, mechanism: Mechanism) -> Step:
     return Step("centers", "Centres of rotation", (*words, *((prose(agree),) if agree else ())))
 
 
-def place_cells(state: KinematicState, center: RotationCenter) -> tuple[Cell, Cell]:
-    """x and y; of a centre at infinity in which direction."""
+def _place_of(state: KinematicState, mechanism: Mechanism, pair: tuple[str, str]) -> tuple[Cell, Cell]:
+    """x and y of the centre of a pair; of one at infinity in which direction."""
+    center = mechanism.centers[pair]
     x, y, _ = center.point
     if not center.at_infinity:
         return cell(state, x), cell(state, y)

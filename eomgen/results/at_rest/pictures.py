@@ -13,17 +13,13 @@ from typing import Any
 import numpy as np
 
 from eomgen.documents import (
-    INK,
     Picture,
-    PlacedName,
     Scale,
     Sketch,
-    draw_model,
+    add_names,
     four_figures,
-    name_along,
     notation_of,
     own_symbol,
-    scale_of,
 )
 from eomgen.frozen import dataclass
 from eomgen.mechanics.free_bodies import Axes, Component, Effect
@@ -32,7 +28,7 @@ from eomgen.model import Couple, Model, PointForce, SpreadLoad
 from eomgen.proof import Check, DrawnPanel, ReportedPush, structure_pictured
 from eomgen.results.at_rest.section_steps import LETTERS, Sections, sections_in_space
 from eomgen.results.at_rest.steps import letter_of_load, letter_of_reaction
-from eomgen.scene import DrawnArrow, Mark, arrow_marks, is_freer_outward, never_short, pushes_reported, spread_mark
+from eomgen.scene import DrawnArrow, Mark, arrow_marks, pushes_reported, spread_mark
 from eomgen.symbolic.expression import Node, Scalar, Vector
 from eomgen.symbolic.numeric import numbers_of, tolerances
 from eomgen.symbolic.print import Setter, Symbol, text_size, to_text
@@ -348,8 +344,6 @@ def _labels(panel: Any, points: Iterable[tuple[Any, ...]]) -> None:
     Args:
         points: (x, y), and the words for y where it is not written as a number.
     """
-    from eomgen.documents import NamesArtist
-
     points = list(points)
     largest = max((abs(point[1]) for point in points), default=0.0)
     width = max((abs(point[0]) for point in points), default=1.0) or 1.0
@@ -362,9 +356,8 @@ def _labels(panel: Any, points: Iterable[tuple[Any, ...]]) -> None:
         )
         if abs(point[1]) > tolerances.COMPUTED * largest and not twin:
             shown.append(point)
-    words = [(point, point[2] if len(point) > 2 else four_figures(point[1])) for point in shown]
-    names = [PlacedName(text, point[:2], INK, 8.0, rank) for rank, (point, text) in enumerate(words) if text]
-    panel.add_artist(NamesArtist(names, [np.column_stack(line.get_data()) for line in panel.lines[1:]]))
+    words = [(point[2] if len(point) > 2 else four_figures(point[1]), point[:2]) for point in shown]
+    add_names(panel, words, [np.column_stack(line.get_data()) for line in panel.lines[1:]])
     panel.margins(x=0.03, y=0.22)
     if not largest:
         panel.set_yticks([0])
@@ -536,10 +529,10 @@ class StaticScene:
             zero = each.size <= tolerances.COMPUTED * (self.largest if each.turns else largest)
             if zero and each.role == "force":
                 continue
-            length = 0.0 if zero else 1.0 if each.turns else never_short(each.size, largest, SHORTEST)
+            length = 0.0 if zero else 1.0 if each.turns else DrawnArrow.never_short(each.size, largest, SHORTEST)
             vector = each.vector * (length / each.size if each.size else 0.0)
             at, way = self.bare.page(each.at).tolist(), (reach * self.bare.page(vector)).tolist()
-            outward = each.of.startswith("tension(") or (not each.turns and is_freer_outward(lines, at, way))
+            outward = each.of.startswith("tension(") or (not each.turns and DrawnArrow.is_freer_outward(lines, at, way))
             at = each.at
             if each.turns and not self.bare.plane:
                 at = at + self._beside(at, vector, drawn)
@@ -587,7 +580,7 @@ class StaticScene:
     @property
     def scale(self) -> Scale:
         """Scale of all forces and couples, of the loads and the reactions."""
-        return scale_of(self._sizes)
+        return Scale.of(self._sizes)
 
     @property
     def largest(self) -> float:
@@ -666,10 +659,10 @@ class StaticScene:
 def draw_structure(panel: Any, scene: StaticScene) -> None:
     """Bodies, supports, loads in red, reactions in green, member forces in blue (tension) and red (compression)."""
     sketch = scene.sketch
-    draw_model(panel, sketch)
+    sketch.draw(panel)
     for name, ends, value in scene.members:
         places = [sketch.position((node, Vector.ZERO)) for node in ends]
-        name_along(panel, scene.label(value), places, sketch.colors[name])
+        sketch.name_along(panel, scene.label(value), places, name)
     if scene.members:
         unit = f" [{scene.scale.unit('N')}]" if scene.known else ""
         panel.set_title(f"members{unit}: tension blue, compression red", fontsize=9, loc="right", color="#505050")

@@ -28,7 +28,6 @@ from eomgen.documents import (
     count,
     data_step,
     document_of,
-    draw_model,
     listed_symbols,
     narrow_grid,
     open_at_rest,
@@ -465,7 +464,7 @@ def resting_picture(places: Sequence[Equilibrium]) -> Picture:
     def fill(figure: Any) -> None:
         for k, place in enumerate(places, start=1):
             panel = figure.add_subplot(rows, columns, k)
-            draw_model(panel, _sketch(place), names=k == 1)
+            _sketch(place).draw(panel, names=k == 1)
             panel.set_title(f"{k}: {place.stability.kind}", fontsize=10)
 
     return Picture((SIDE * columns, SIDE * rows), fill, model.name)

@@ -30,7 +30,6 @@ from eomgen.documents import (
     Step,
     data_step,
     document_of,
-    draw_model,
     picture_of_scene,
     prose,
 )
@@ -579,7 +578,7 @@ def inertia_picture(
     known = {body: rows for body, rows in axes.items() if body in system.motion.index}
     marks = (mark for body, rows in known.items() for mark in _axes(bare, body, np.array(rows)))
     sketch = replace(bare, more=tuple(marks))
-    return Picture((8, 6), lambda figure: draw_model(figure.subplots(), sketch), model.name)
+    return Picture((8, 6), lambda figure: sketch.draw(figure.subplots()), model.name)
 
 
 def values_at_start(system: System) -> dict[Node, float]:

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.documents import Picture, Sketch, artist_of, draw_model, limits, mathtext, notation_of
+from eomgen.documents import Picture, Sketch, artist_of, mathtext, notation_of
 from eomgen.errors import RunFailed
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.linearization import Mode, Modes, SmallMotions
+from eomgen.mechanics.linearization import Modes, SmallMotions
 from eomgen.model import Range
 from eomgen.symbolic.expression import Node
 from eomgen.symbolic.numeric import tolerances
@@ -42,36 +42,37 @@ def modes_picture(modes: Modes) -> Picture:
     plane = reference.system.scope.model.space == "plane"
     height = SIDE
     if plane:
-        low, high = limits(_at_rest(modes).drawing)
+        low, high = _at_rest(modes).corners
         height = min(SIDE, TITLE + SIDE * float(high[1] - low[1]) / float(high[0] - low[0]))
 
     def fill(figure: Any) -> None:
-        for k, mode in enumerate(drawn, start=1):
-            panel = figure.add_subplot(rows, columns, k)
-            (_swung if plane else _bars)(panel, modes, mode)
-            panel.set_title(_title(k, mode), fontsize=10)
+        for k in range(len(drawn)):
+            panel = figure.add_subplot(rows, columns, k + 1)
+            (_swung if plane else _bars)(panel, modes, k)
+            panel.set_title(_title(modes, k), fontsize=10)
 
     return Picture((SIDE * columns, height * rows + TITLE), fill, reference.system.scope.model.name)
 
 
-def _title(k: int, mode: Mode) -> str:
+def _title(modes: Modes, k: int) -> str:
+    mode = modes.spectrum.modes[k]
     if mode.frequency is None:
-        return f"{k}: {mode.kind}, {mode.eigenvalue.real:.4g} 1/s"
-    return f"{k}: {mode.frequency:.4g} rad/s"
+        return f"{k + 1}: {mode.kind}, {mode.eigenvalue.real:.4g} 1/s"
+    return f"{k + 1}: {mode.frequency:.4g} rad/s"
 
 
-def _swung(panel: Any, modes: Modes, mode: Mode) -> None:
+def _swung(panel: Any, modes: Modes, k: int) -> None:
     """The bodies of the reference in grey, the system swung out over them."""
-    system = modes.small.reference.system
+    system, shape = modes.small.reference.system, modes.spectrum.modes[k].shape
     here = _at_rest(modes)
     values = here.values
     grey = dict.fromkeys(system.motion.index, AT_REST)
     for stroke in here.drawing.strokes:
         if stroke.role in BODIES:
             artist_of(panel, stroke, 0, grey, 0.5)
-    size = _size(system, values, mode, here)
-    moved = {q: values[q] + size * mode.shape[q].real for q in mode.shape}
-    draw_model(panel, Sketch(system, {**values, **moved}), names=False)
+    size = _size(system, values, shape, here)
+    moved = {q: values[q] + size * x.real for q, x in shape.items()}
+    Sketch(system, {**values, **moved}).draw(panel, names=False)
 
 
 def _at_rest(modes: Modes) -> Sketch:
@@ -80,9 +81,9 @@ def _at_rest(modes: Modes) -> Sketch:
     return Sketch(reference.system, {x: float(v) for x, v in reference.numbers.items()})
 
 
-def _size(system: System, values: Mapping[Node, float], mode: Mode, here: Sketch) -> float:
+def _size(system: System, values: Mapping[Node, float], shape: Mapping[Node, complex], here: Sketch) -> float:
     """Amplitude of a mode's picture: no point of the drawing moves by more than PART of its extent."""
-    aside = {**values, **{q: values[q] + tolerances.WIDE_STEP * x.real for q, x in mode.shape.items()}}
+    aside = {**values, **{q: values[q] + tolerances.WIDE_STEP * x.real for q, x in shape.items()}}
     there = Sketch(system, aside)
     moved = [
         abs(b - a).max()
@@ -93,11 +94,12 @@ def _size(system: System, values: Mapping[Node, float], mode: Mode, here: Sketch
     return PART * here.extent * tolerances.WIDE_STEP / largest if largest > 0 else 0.0
 
 
-def _bars(panel: Any, modes: Modes, mode: Mode) -> None:
+def _bars(panel: Any, modes: Modes, k: int) -> None:
     """The shape, a bar for each coordinate."""
+    shape = modes.spectrum.modes[k].shape
     notation = notation_of(modes.small.reference.system.scope.model)
-    names = [f"${mathtext(q.name, notation)}$" for q in mode.shape]
-    panel.bar(names, [x.real for x in mode.shape.values()], color=BAR)
+    names = [f"${mathtext(q.name, notation)}$" for q in shape]
+    panel.bar(names, [x.real for x in shape.values()], color=BAR)
     panel.axhline(0, color="#808080", linewidth=0.8)
     panel.set_ylim(-1.1, 1.1)
 

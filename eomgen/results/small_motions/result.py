@@ -28,7 +28,6 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.linearization import (
     Frequency,
     LinearEquations,
-    Mode,
     Modes,
     SmallMotions,
     Spectrum,
@@ -340,7 +339,7 @@ class Linearization(Result):
                 for f in self.modes.transfers
             ],
             "eigenvalues": [[x.real, x.imag] for x in self.spectrum.eigenvalues] if self.valued else None,
-            "modes": [self._mode(k, mode) for k, mode in enumerate(self.spectrum.modes)] if self.valued else None,
+            "modes": [self._mode(k) for k in range(len(self.spectrum.modes))] if self.valued else None,
             "stability": self.spectrum.stability if self.valued else None,
             "why": self.spectrum.why if self.valued else None,
         }
@@ -395,7 +394,8 @@ class Linearization(Result):
         flat = iter(numbers_of([x for row in A for x in row], self.small.reference.system.scope.known_exactly))
         return [[next(flat) for _ in row] for row in A]
 
-    def _mode(self, k: int, mode: Mode) -> dict[str, Any]:
+    def _mode(self, k: int) -> dict[str, Any]:
+        mode = self.spectrum.modes[k]
         shares = self.modes.participation if self.equations.states else ()
         exact = next((f.exact for f in self.frequencies if f.mode is mode), None)
         return {

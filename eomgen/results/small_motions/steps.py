@@ -32,9 +32,7 @@ from eomgen.documents import (
 from eomgen.documents import Entry as Place
 from eomgen.errors import DerivationError
 from eomgen.mechanics.linearization import (
-    Frequency,
     LinearEquations,
-    Mode,
     Modes,
 )
 from eomgen.mechanics.state import Entries
@@ -293,14 +291,13 @@ def _written(modes: Modes, polynomial: Polynomial) -> Scalar:
 def _modes(modes: Modes) -> Step:
     """Frequencies in closed form, and a table of the modes in numbers."""
     statements: list[Statement] = []
-    for k, found in enumerate(_frequencies(modes), start=1):
-        if found.exact is not None and not is_zero(found.exact):
-            statements.append(Formula((Law(f"omega_{k}", rf"\omega_{{{k}}}"), _side(modes.written(found.exact)))))
+    for k, exact in enumerate(_exact_frequencies(modes), start=1):
+        if exact is not None and not is_zero(exact):
+            statements.append(Formula((Law(f"omega_{k}", rf"\omega_{{{k}}}"), _side(modes.written(exact)))))
     if modes.small.reference.valued:
-        listed_modes = modes.spectrum.modes
-        rows = [_row(k, mode) for k, mode in enumerate(listed_modes, start=1)]
+        rows = list(_mode_rows(modes))
         head = ("mode", "eigenvalue [1/s]", "omega [rad/s]", "f [Hz]", "damping ratio", "")
-        statements += [narrow_grid(head, rows), _shapes(listed_modes)]
+        statements += [narrow_grid(head, rows), _shapes(modes)]
         if modes.small.numbers.states and modes.participation:
             names = [f"mode {k}" for k in range(1, len(rows) + 1)]
             every = modes.small.numbers.moving
@@ -312,22 +309,19 @@ def _modes(modes: Modes) -> Step:
     return Step("modes", "Modes", tuple(statements))
 
 
-def _frequencies(modes: Modes) -> Sequence[Frequency]:
-    """None, where their order depends on the parameters."""
+def _exact_frequencies(modes: Modes) -> list[Scalar | None]:
+    """Each in closed form, None where it has none; [] where their order depends on the parameters."""
     try:
-        return modes.frequencies
+        return [found.exact for found in modes.frequencies]
     except DerivationError:
-        return ()
+        return []
 
 
-def _row(k: int, mode: Mode) -> tuple[Cell, ...]:
-    omega, hertz, ratio = mode.frequency, mode.hertz, mode.damping_ratio
-    return (
-        str(k),
-        _complex(mode.eigenvalue, pair=mode.pair),
-        *("" if x is None else f"{x:.7g}" for x in (omega, hertz, ratio)),
-        mode.kind,
-    )
+def _mode_rows(modes: Modes) -> Iterator[tuple[Cell, ...]]:
+    for k, mode in enumerate(modes.spectrum.modes, start=1):
+        sizes = (mode.frequency, mode.hertz, mode.damping_ratio)
+        shown = ("" if x is None else f"{x:.7g}" for x in sizes)
+        yield str(k), _complex(mode.eigenvalue, pair=mode.pair), *shown, mode.kind
 
 
 def _complex(x: complex, *, pair: bool = False) -> Cell:
@@ -339,11 +333,11 @@ def _complex(x: complex, *, pair: bool = False) -> Cell:
     return Law(text, latex.replace("+-", r"\pm ") + r"\,\mathrm{i}")
 
 
-def _shapes(modes: Sequence[Mode]) -> Grid:
+def _shapes(modes: Modes) -> Grid:
     """A column for each mode, the largest displacement 1."""
-    coordinates = list(modes[0].shape) if modes else []
-    rows: list[tuple[Cell, ...]] = [(q, *(_complex(_tidied(mode.shape[q])) for mode in modes)) for q in coordinates]
-    return Grid(("shape", *(f"mode {k}" for k in range(1, len(modes) + 1))), tuple(rows))
+    shapes = [mode.shape for mode in modes.spectrum.modes]
+    rows: list[tuple[Cell, ...]] = [(q, *(_complex(_tidied(each[q])) for each in shapes)) for q in (shapes or [{}])[0]]
+    return Grid(("shape", *(f"mode {k}" for k in range(1, len(shapes) + 1))), tuple(rows))
 
 
 def _tidied(x: complex) -> complex:
