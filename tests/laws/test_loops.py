@@ -17,7 +17,7 @@ import eomgen
 from eomgen.mechanics.start.assembly_modes import Branches
 from eomgen.mechanics.start.state import Start
 from eomgen.proof import branches_otherwise
-from eomgen.study import checked_model
+from eomgen.study import Checked
 
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore:.*Statically indeterminate:RuntimeWarning")]
 MODELS = Path(__file__).parents[2] / "models"
@@ -245,7 +245,7 @@ def test_a_four_bar_closes_in_two_ways():
 
 def test_a_side_that_is_told_the_other_way_round_is_contradicted():
     """The pin of coupler and rocker is on the left in one branch and on the right in the other, by poses alone."""
-    checked = checked_model(model("four_bar"))
+    checked = Checked.of(model("four_bar"))
     found = checked.start.branches
     assert found is not None and branches_otherwise(checked) == ""
     (side,) = found.here.sides
