@@ -355,7 +355,7 @@ class _Results:
             own = pending.with_(rows[row:last_row], tracks[track:last_track])
             row, track = last_row, last_track
             pending.clear()
-            found = self._phase_run(phase, k, own, numbers)
+            found = self._phase_run((phase, width), k, own, numbers)
             yield found
             if found.after is None:
                 return
@@ -363,11 +363,15 @@ class _Results:
         pending.add(rows[row:], tracks[track:])
         m.n_done = m.n_rows = m.n_tracks = 0
 
-    def _phase_run(self, phase: PhaseModel, k: int, own: _Pending, numbers: Sequence[list[float]]) -> PhaseRun:
-        """One phase that is over, by its place among those that are given, with its rows and steps."""
-        done, n = self._tables.done[k], self._tables.width
-        rows, tracks = own.in_rows_of(len(phase.moving) + 1)
-        last = np.array(numbers[k][n : n + len(phase.moving)])
+    def _phase_run(self, of: tuple[PhaseModel, int], k: int, own: _Pending, numbers: Sequence[list[float]]) -> PhaseRun:
+        """One phase that is over, by its place among those that are given, with its rows and steps.
+
+        Args:
+            of: it, and the length of a row.
+        """
+        (phase, width), done, n = of, self._tables.done[k], self._tables.width
+        rows, tracks = own.in_rows_of(width)
+        last = np.array(numbers[k][n : n + width - 1])
         track = StepStates([tracks[:, 0]], [tracks[:, 1:]], 1, int(done.steps), len(tracks))
         end, bound, after, crossing = done.end, None, None, None
         status: RunStatus = "finished"

@@ -560,12 +560,12 @@ def on_pieces(model: Model, pieces: Mapping[str, int]) -> Model:
 
 def changed(model: Model, before: Configuration, after: Configuration) -> tuple[str, ...]:
     """Changes from one configuration to another, a phrase each: "the support 'wall' opens"."""
-    contacts = {contact.name: contact for contact in on_pieces(model, after.pieces).contacts}
     phrases = [_moved_on(model, name, k) for name, k in after.pieces.items() if before.pieces.get(name, k) != k]
-    for name, mode in after.modes.items():
-        old = before.modes.get(name)
-        if old is not None and old != mode:
-            phrases += _phrases(contacts[name], old, mode)
+    pairs = [(name, before.modes.get(name), mode) for name, mode in after.modes.items()]
+    contacts = on_pieces(model, after.pieces).contacts if pairs else ()
+    for name, old, mode in pairs:
+        if old is not None and old is not mode and old != mode:
+            phrases += _phrases(next(contact for contact in contacts if contact.name == name), old, mode)
     return tuple(phrases)
 
 

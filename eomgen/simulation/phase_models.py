@@ -17,7 +17,7 @@ from eomgen.mechanics.dynamics import EquationsOfMotion, System, assembled_by_re
 from eomgen.mechanics.free_bodies import equations_of_motion, with_friction
 from eomgen.mechanics.kinematics import GROUND, BodyLink, ContactMode, ContactModes
 from eomgen.model import Contact, Coordinate, Model, PointForce, Table
-from eomgen.simulation.contacts import Configuration, ContactEvents, bounds_of, on_pieces
+from eomgen.simulation.contacts import Configuration, ContactEvents, bounds_of, changed, on_pieces
 from eomgen.simulation.impacts import WithoutContacts
 from eomgen.simulation.phase_model import Fed, PhaseModel, Values
 from eomgen.symbolic.exact import readable_all
@@ -116,6 +116,7 @@ class PhaseModels:
         self._last: tuple[Configuration, PhaseModel] | None = None
         # by what they were found from; configurations that a run has come to, or asked for
         self.known: dict[str, dict[Hashable, Any]] = {"starts": {}, "in C": {}, "come to": {}, "asked for": {}}
+        self.known["changes"] = {}
         self._slides: dict[Configuration, Slides] = {}
 
     def at(self, p: np.ndarray, fed: Fed | None = None) -> PhaseModels:
@@ -173,6 +174,16 @@ class PhaseModels:
         for contact in self.model.contacts:
             found *= (3 if contact.dry else 1) + contact.unilateral
         return found > MOST_COMPILED
+
+    def changes(self, before: Configuration, after: Configuration) -> tuple[str, ...]:
+        """Changes from one configuration to another, as of `changed`, said once."""
+        if self._origin is not None:
+            return self._origin[0].changes(before, after)
+        known, key = self.known["changes"], (id(before), id(after))
+        if key not in known:
+            known[key] = before, after, changed(self.model, before, after)  # both are kept: an id stays theirs
+        found: tuple[str, ...] = known[key][2]
+        return found
 
     def slides(self, configuration: Configuration) -> Slides:
         """The sliding velocities of a configuration, for which no force needs to be known."""

@@ -20,7 +20,7 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.simulation.columns import OutputColumns
-from eomgen.simulation.contacts import EventFunction, changed
+from eomgen.simulation.contacts import EventFunction
 from eomgen.simulation.integration import drift_of
 from eomgen.simulation.integrator import Run, measured
 from eomgen.simulation.phase_change import PhaseStart
@@ -293,7 +293,7 @@ def phase_text(models: PhaseModels, phase_run: PhaseRun) -> str:
     when = f"at t = {after.t:.6g} s"
     if after.failure:
         return f"{after.failure} {when}"
-    phrases = changed(models.model, phase_run.here.configuration, after.configuration)
+    phrases = models.changes(phase_run.here.configuration, after.configuration)
     if after.impact is None:
         return f"{', '.join(phrases) or 'the contacts change and return'} {when}"
     away = set(phase_run.here.configuration.open) & set(after.configuration.open)

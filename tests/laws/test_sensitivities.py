@@ -11,6 +11,7 @@ import pytest
 from slow_run import beside, in_slow_run, sampled
 
 import eomgen
+from eomgen.errors import EomgenError
 from eomgen.sensitivities.derivatives import slope_requested
 
 MODELS = Path(__file__).parents[2] / "models"
@@ -225,6 +226,15 @@ def test_what_has_no_derivative_says_why():
     assert "of a whole run" in (found["max(theta1)", "m1"].message or "") and found.failed
     with pytest.raises(eomgen.UsageError, match="no derivative"):
         found["theta1", "l1"]
+
+
+@pytest.mark.parametrize(
+    "name, of, to", [("stick_slip", "b", "v"), ("pendulum_on_stop", "q", "e"), ("bouncing_ball", "y", "e")]
+)
+def test_a_run_whose_contacts_change_has_no_derivative_and_says_so(name, of, to):
+    """Stick and slip, a stop, impacts: what may change is named, and another way."""
+    with pytest.raises(EomgenError, match=r"(?s)may change along the way.*fix: differences of two runs"):
+        eomgen.sensitivity(eomgen.load(MODELS / f"{name}.toml"), of, to, time=1.0)
 
 
 def test_two_equal_frequencies_have_no_derivative():
