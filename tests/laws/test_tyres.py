@@ -165,12 +165,12 @@ forces.blade = { kind = "tyre", point = "sledge.center", lateral = { stiffness =
 
 
 def test_an_equation_of_a_slip_is_right_while_the_wheel_goes_ahead():
-    """l s' = v_y - |v_x| s is written with v_x: right where that is above 0; with the other sign it is wrong."""
+    """l s' = v_y - |v_x| s is written with v_x: right where that is above 0; twice of it is wrong."""
     drag = """forces.snow = { kind = "force", point = "sledge.center", force = ["-3*x'", 0] }"""
     model = eomgen.loads(SLIDING + drag)
     verdict = eomgen.verify(model, "blade_slip' = (y' - x'*blade_slip)/0.5")
     assert verdict.verdict == "right" and verdict.up_to.endswith("x' > 0")
-    assert eomgen.verify(model, "blade_slip' = (y' + x'*blade_slip)/0.5").verdict == "wrong"
+    assert eomgen.verify(model, "blade_slip' = (y' - 2*x'*blade_slip)/0.5").verdict == "wrong"
 
 
 def test_what_stands_on_a_tyre_may_rest_anywhere():
