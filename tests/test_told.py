@@ -286,11 +286,11 @@ def test_virtual_works_that_are_told_are_those_of_the_mechanism():
     balance"""
     assert not reported_works()
     assert "along" in reported_works(lambda x: replace(x, along=f"-({x.along})"))
-    assert "along" in reported_works(lambda x: replace(x, blocks=[replace(b, spin=f"-({b.spin})") for b in x.blocks]))
+    assert "along" in reported_works(lambda x: replace(x, blocks=[(b, f"-({w})", v) for b, w, v in x.blocks]))
     assert "works" in reported_works(lambda x: replace(x, works=[(name, f"2*({w})") for name, w in x.works]))
     assert "works" in reported_works(lambda x: replace(x, printed=x.printed[1:]))
     assert "value" in reported_works(lambda x: replace(x, last=-x.last))
     assert "equation" in reported_works(lambda x: replace(x, left=x.left + 1))
-    assert "block 1" in reported_works(lambda x: replace(x, rows=[replace(r, spin=-r.spin) for r in x.rows]))
-    moved = reported_works(lambda x: replace(x, places=[replace(p, shift=[2 * s for s in p.shift]) for p in x.places]))
+    assert "block 1" in reported_works(lambda x: replace(x, rows=[(c, -w, *more) for c, w, *more in x.rows]))
+    moved = reported_works(lambda x: replace(x, places=[(c, w, [2 * s for s in v], p) for c, w, v, p in x.places]))
     assert "shift" in moved

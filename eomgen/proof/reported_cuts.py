@@ -361,8 +361,10 @@ class _Works:
         values = (("machines", reported.value), ("people", reported.last))
         if off := next((who for who, x in values if abs(self.value_of(x) - R) > tolerances.CARRIED * (1 + abs(R))), ""):
             return f"another value is reported to {off} than {R:.10g}"
-        here, nearby = (self.value_of(reported.left, R + step, reported.name) for step in (0, 1))
-        if abs(here) > tolerances.CARRIED * (1 + size) or abs(abs(nearby - here) - abs(along)) > tolerances.CARRIED * (
+        far = 1 + abs(R)  # a step that its digits show
+        here, nearby = (self.value_of(reported.left, x, reported.name) for x in (R, R + far))
+        slope = abs(nearby - here) / far
+        if abs(here) > tolerances.CARRIED * (1 + size) or abs(slope - abs(along)) > tolerances.CARRIED * (
             1 + abs(along)
         ):
             return "the equation that is printed is another one"
