@@ -206,11 +206,11 @@ def wrong_sections(change: Callable[[Any, Any], None]) -> str:
     from eomgen.results.at_rest.section_steps import reported_sections, section_payload, section_steps
 
     sections = eomgen.statics(eomgen.loads(BEAM)).sections
-    reported = dict(enumerate(reported_sections(sections, section_steps(sections), section_payload(sections))))
+    reported = list(reported_sections(sections, section_steps(sections), section_payload(sections)))
     assert len(reported) == 2
-    for _, one in reported.values():
-        change(one.pieces[0], one.extremes[0])
-    return "; ".join(c.detail for c in sections_reported(sections.found, reported.values(), {}) if c.status == "fails")
+    for _, _, pieces, extremes in reported:
+        change(pieces[0], extremes[0])
+    return "; ".join(c.detail for c in sections_reported(sections.found, reported, {}) if c.status == "fails")
 
 
 def test_section_forces_as_they_are_told_hold():
