@@ -68,7 +68,6 @@ class WithoutContacts:
         Raises:
             DerivationError: no impulses satisfy the law.
         """
-        self._refuse_rubbing_joints()
         x, nu = self._x(values), len(self.system.symbols.u)
         found = self._matrices.many(t, x[None, :], self.p)[0]
         M, rows = found[: nu * nu].reshape(nu, nu), found[nu * nu :].reshape(-1, nu + 1)
@@ -89,22 +88,28 @@ class WithoutContacts:
         size = tolerances.COMPUTED * max(1.0, float(np.max(np.abs(u), initial=0.0)))
         approached = [hit.name for hit in hits if hit.speed(u) < -size]
         impulses = {**self._named(after), **self.of_joints(t, values, after)}
+        self._refuse_rubbing_joints(impulses)
         impact = Impact(t, ", ".join(approached), impulses, self._lost(t, x, after.u))
         rates = self._rates.many(t, self._with_speeds(x, after.u)[None, :], self.p)[0]
         changed = {f"{q.name}'": float(v) for q, v in zip(self.system.symbols.q, rates, strict=True)}
         speeds = {node.name: float(v) for node, v in zip(self.system.symbols.u, after.u, strict=True)}
         return {**values, **changed, **speeds}, impact
 
-    def _refuse_rubbing_joints(self) -> None:
-        """Refuses an impact where friction goes by the force of a joint: an impulse there would rub too.
+    def _refuse_rubbing_joints(self, impulses: Mapping[str, float]) -> None:
+        """Refuses an impact that presses a joint whose friction goes by its force: an impulse there would rub too.
 
+        A stop along a slide presses it by no impulse.
         Raises:
             DerivationError: the joint is named.
         """
+        least = tolerances.COMPUTED * max(map(abs, impulses.values()), default=0.0)
         for body, part in self.system.scope.model.bodies.items():
             if part.joint is not None and any(law.coulomb is not None for _, _, law in part.joint.frictions):
-                what = f"the friction of '{body}' goes by the force in its joint: an impulse there would rub too"
-                raise DerivationError(what, f"bodies.{body}.joint", "give it a constant size")
+                pressed = [impulses.get(f"impulse_{k}({body})") for k in ("x", "y", "z", "n")]
+                known = [x for x in pressed if x is not None]
+                if part.joint.kind == "screw" or not known or max(map(abs, known)) > least:
+                    what = f"the friction of '{body}' goes by the force in its joint: an impulse there would rub too"
+                    raise DerivationError(what, f"bodies.{body}.joint", "give it a constant size")
 
     @property
     def restitutions(self) -> dict[str, float]:

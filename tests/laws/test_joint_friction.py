@@ -598,3 +598,16 @@ def test_a_screw_turns_by_the_law_of_its_thread():
     assert result.phases[0].end == pytest.approx(10 / slows)
     assert result["T"][-1] == pytest.approx(500 * 0.001)
     assert result.certify().ok
+
+
+def test_a_stop_along_a_slide_presses_no_friction():
+    """Up with e v against g (sin a + mu cos a), down by g (sin a - mu cos a): each hit e sqrt(down/up) of the last."""
+    text = RAMP.replace("mu_s = 0.6", "mu_s = 0.2").replace("speed = -1", "speed = 2")
+    result = run(text.replace("friction = {", 'limits = ["-inf", 1]\nrestitution = 0.5\nfriction = {'), 1.25)
+    down, up = (G * (math.sin(0.5) + sign * 0.2 * math.cos(0.5)) for sign in (-1, 1))
+    v, t = math.sqrt(4 + 2 * down), 0.0
+    due = [(math.sqrt(4 + 2 * down) - 2) / down]
+    for _ in range(2):
+        v, t = v / 2 * math.sqrt(down / up), v / 2 / up
+        due.append(due[-1] + t + v / down)
+    assert [impact.t for impact in result.impacts[:3]] == pytest.approx(due, rel=1e-9)

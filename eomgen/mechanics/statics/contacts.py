@@ -430,7 +430,7 @@ def _conditions(system: System) -> Iterator[StickCondition]:
         most = largest = ContactMode.size_of(system.scope, contact.grip)
         whole = F if N is None else over(F, N)
         if contact.kind == "screw" and N is not None:  # of a thread h/r <= mu
-            arm = system.scope.value(contact.friction.radius)
+            arm = system.scope.value(getattr(contact.friction, "radius", None))
             whole, most = over(whole, arm), over(most, arm)
         ratio = simplest(whole, Work.ANSWER, positive)
         force = largest if N is None else largest * function("abs", N)
