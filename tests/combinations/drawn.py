@@ -450,6 +450,24 @@ class Drawing:
         }
         self.depends(two, three)
 
+    def tie_capstan(self) -> None:
+        one = self.coordinate("s1", "length", -0.6, 0.5)
+        two = self.coordinate("s2", "length", -0.8)
+        up = self.v(0, 1, 0)
+        self.particle("left", self.joint("prismatic", at=self.v("-h", 0, 0), axis=up, displacement=one))
+        self.particle("right", self.joint("prismatic", at=self.v("h", 0, 0), axis=up, displacement=two), "2*m")
+        self.bodies["pulley"] = {
+            "shape": {"kind": "disc", "mass": "m", "radius": "h"},
+            "joint": self.joint("revolute", angle=self.coordinate("s3", "angle", 0.0)),
+        }
+        self.constraints["rope"] = {
+            "kind": "capstan",
+            "path": ["left.center", {"body": "pulley", "turn": "cw"}, "right.center"],
+            "coefficient": 0.2,
+            "angle": "pi",
+        }
+        self.depends(two)
+
     def tie_gear(self) -> None:
         one = self.coordinate("s1", "angle", 0.2, self.number(-1, 1))
         two = self.coordinate("s2", "angle", 0.1)
@@ -856,6 +874,38 @@ class Drawing:
                 **rng.choice(({}, {"backlash": 0.1}, {"damping": "ct/5"})),
                 **rng.choice(({}, {"efficiency": 0.9, "smooth": 0.7})),
             },
+            "brake": {
+                "kind": "brake",
+                "body": body,
+                "smooth": 0.7,
+                "force" if self.bodies[body]["joint"]["kind"] == "prismatic" else "torque": "F0*sin(w*t)"
+                if self.bodies[body]["joint"]["kind"] == "prismatic"
+                else "kt*sin(w*t)",
+            }
+            if self.bodies[body]["joint"]["kind"] in ("revolute", "prismatic", "screw")
+            else None,
+            "belt": {
+                "kind": "belt",
+                "bodies": [rng.choice(others), body],
+                "radii": ["h/9", "h/7"],
+                "tension": "F0*(1 + sin(w*t))",
+                "coefficient": 0.3,
+                "wrap": 2.5,
+                "smooth": {"value": 0.7, "unit": "m/s"} if self.levels["units"] != "none" else 0.7,
+                **own.choice(({}, {"crossed": True})),
+            }
+            if others
+            else None,
+            "clutch": {
+                "kind": "clutch",
+                "bodies": [rng.choice(others), body],
+                "smooth": 0.7,
+                **own.choice(
+                    ({"torque": "kt*sin(w*t)"}, {"normal": "F0", "coefficient": 0.3, "radius": "h", "faces": 2})
+                ),
+            }
+            if others
+            else None,
             "mass_flow": {
                 "kind": "mass_flow",
                 "point": point,

@@ -47,7 +47,8 @@ FORCES = (
     "gravity", "force", "follower", "couple", "distributed", "spring", "spring_along", "spring_start", "spring_moved",
     "damper", "damper_along", "torsion_spring", "torsion_damper", "between", "potential", "kinetic", "generalized",
     "values", "mass_flow", "rain", "bumper", "hydraulic", "gas", "air",
-    "rope", "gear_mesh", "drag", "plate", "buoyancy", "added_mass", "tyre", "tyre_wheel", "none",
+    "rope", "gear_mesh", "clutch", "brake", "belt", "drag", "plate", "buoyancy", "added_mass",
+    "tyre", "tyre_wheel", "none",
 )  # fmt: skip
 
 FACTORS: dict[str, tuple[str, ...]] = {
@@ -58,7 +59,8 @@ FACTORS: dict[str, tuple[str, ...]] = {
     ),
     "loop": ("none", "four_bar", "slider_crank", "two_loops", "on_base"),
     "tie": (
-        "none", "support", "clamp", "guide", "slider", "link", "rolling", "skate", "string", "gear", "gap", "rate",
+        "none", "support", "clamp", "guide", "slider", "link", "rolling", "skate", "string",
+        "capstan", "gear", "gap", "rate",
         "points", "motion",
     ),
     "closure": ("multipliers", "dependent", "near"),
@@ -118,6 +120,11 @@ FORBIDDEN: tuple[Forbidden, ...] = (
         ("torsion_spring", "torsion_damper"),
         "in space it stands in the joint",
         "no single angle in space",
+    ),
+    *(
+        Forbidden(("space", "space"), (factor, kind), "about the axis of a hinge, which not every joint has")
+        for factor in ("force", "second_force")
+        for kind in ("clutch", "brake", "belt")
     ),
     *(
         Forbidden(("space", "space"), (factor, "gear_mesh"), "its wheels are of the plane", "turn in one plane")

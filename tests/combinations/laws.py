@@ -422,6 +422,12 @@ def _string(name: str, constraint: dict, now: Any, o: Any) -> Rows:
     return joined
 
 
+def _capstan(name: str, constraint: dict, now: Any, o: Any) -> Rows:
+    """One row of the mean tension: the rope slides on its drum."""
+    first, drum, last = constraint["path"]
+    return _string(name, {**constraint, "path": [first, {**drum, "slip": True}, last]}, now, o)
+
+
 def _moves(o: Any, now: Any, constraint: dict) -> bool:
     return True
 
@@ -457,7 +463,8 @@ def _motion(name: str, constraint: dict, now: Any, o: Any) -> Rows:
 
 CONSTRAINTS: dict[str, Callable] = {
     "pin": _pin, "support": _support, "clamp": _clamp, "guide": _guide, "slider": _slider, "link": _link,
-    "rolling": _rolling, "skate": _skate, "string": _string, "gear": _gear, "equation": _equation, "motion": _motion,
+    "rolling": _rolling, "skate": _skate, "string": _string, "capstan": _capstan, "gear": _gear,
+    "equation": _equation, "motion": _motion,
 }  # fmt: skip
 
 
@@ -740,6 +747,52 @@ def _gear_mesh(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
     return [Load(name, b, torque=np.array([0, 0, x])) for b, x in couples]
 
 
+def _clutch(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
+    """M tanh(w/w_0) against w = omega_2 - omega_1, M = n mu N r, and none where it is not pressed."""
+    first, second = f["bodies"]
+    w = [float(component(now.spin(b), 2).c[0][0]) for b in (first, second)]
+    parts = [f[key] for key in ("torque", "normal", "coefficient", "radius", "faces") if key in f]
+    size = max(0.0, float(np.prod([_number(now.value(x)) for x in parts])))
+    M = size * np.tanh((w[1] - w[0]) / now.model.number(f["smooth"]))
+    return [Load(name, b, torque=np.array([0, 0, x])) for b, x in ((first, M), (second, -M))]
+
+
+def _brake(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
+    """What friction of the joint itself would do: M tanh(s'/v) against the rate of its variable."""
+    law = {key: f[key] for key in ("torque", "force", "smooth") if key in f}
+    size = max(0.0, _number(now.value(f.get("torque", f.get("force")))))
+    law["torque" if "torque" in law else "force"] = size
+    body = now.model.bodies[f["body"]]
+    kept = ("kind", "on", "at", "point", "turned", "axis", "angle", "displacement", "pitch")
+    alone = {key: x for key, x in body["joint"].items() if key in kept}
+    return [
+        Load(name, load.body, load.place, load.force, load.torque)
+        for load in _in_joint({**body, "joint": {**alone, "friction": law}}, now, o, s)
+    ]
+
+
+def _belt(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
+    """T_0 +- F/2 along its strands, F by the slip of the material: 2 T_0 (e^(mu phi) - 1)/(e^(mu phi) + 1) at most."""
+    (one, two), (r, R) = f["bodies"], f["radii"]
+    other = "ccw" if f.get("crossed") else "cw"
+    wraps = [{"body": one, "radius": r, "turn": "cw"}, {"body": two, "radius": R, "turn": other}]
+    ends, slips = [], []
+    for first, second in (wraps, wraps[::-1]):
+        d = _tangent(now, first, second)
+        (A, a, s_a), (B, b, s_b) = _touch(now, first), _touch(now, second)
+        left = _beside(now, [first, second])
+        p, q = A + _times(left(d), s_a), B + _times(left(d), s_b)
+        slips.append(float(dot(d, now.velocity_at(a, p) - now.velocity_at(b, q)).c[0][0]))
+        ends.append((a, _now(p), b, _now(q), _now(d)))
+    ratio = np.exp(now.model.number(f["coefficient"]) * now.model.number(f["wrap"]))
+    T = max(0.0, _number(now.value(f["tension"])))
+    F = -2 * T * (ratio - 1) / (ratio + 1) * np.tanh((slips[0] - slips[1]) / 2 / now.model.number(f["smooth"]))
+    found = []
+    for (a, p, b, q, d), tension in zip(ends, (T + F / 2, T - F / 2), strict=True):
+        found += [Load(name, a, p, tension * d), Load(name, b, q, -tension * d)]
+    return found
+
+
 def _mass_flow(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
     """What enters per second, times its velocity less that of the point where it was not given against the body."""
     body, place = _split(now, f["point"]), now.point(f["point"])
@@ -857,7 +910,8 @@ FORCES: dict[str, Callable] = {
     "gravity": _gravity, "force": _force, "couple": _couple, "distributed": _distributed, "spring": _spring,
     "damper": _damper, "between": _between, "torsion_spring": _torsion_spring, "torsion_damper": _torsion_damper,
     "potential": _potential, "generalized": _generalized, "kinetic": lambda *_: [], "mass_flow": _mass_flow,
-    "bumper": _bumper, "rope": _rope, "gear_mesh": _gear_mesh, "hydraulic_cylinder": _cylinder,
+    "bumper": _bumper, "rope": _rope, "gear_mesh": _gear_mesh, "clutch": _clutch, "brake": _brake,
+    "belt": _belt, "hydraulic_cylinder": _cylinder,
     "pneumatic_cylinder": _cylinder, "drag": _drag, "plate": _plate, "buoyancy": _buoyancy,
     "added_mass": lambda *_: [], "tyre": _tyre,
 }  # fmt: skip
@@ -1011,7 +1065,18 @@ def potential(o: Any, now: Any) -> float | None:
         elif kind == "buoyancy":
             push = _now(_stream(f, now).rate()) - _now(now.vector(f["acceleration"]))
             V -= now.model.number(f["density"]) * now.model.number(f["volume"]) * push @ _now(now.point(f["point"]))
-        elif kind not in ("damper", "torsion_damper", "kinetic", "mass_flow", "drag", "plate", "added_mass"):
+        elif kind not in (
+            "damper",
+            "torsion_damper",
+            "clutch",
+            "brake",
+            "belt",
+            "kinetic",
+            "mass_flow",
+            "drag",
+            "plate",
+            "added_mass",
+        ):
             return None
     for body in now.model.bodies.values():
         j = body.get("joint", {})
@@ -1042,12 +1107,26 @@ def frictions(o: Any, now: Any, rows: list) -> list[tuple[int, np.ndarray]]:
     found, stuck = [], {row.owner for row in rows if row.role in ("stick t", "stick s")}
     for i, row in enumerate(rows):
         constraint = now.model.constraints.get(row.owner)
+        if constraint is not None and constraint["kind"] == "capstan":
+            found.append((i, _by_euler(o, now, constraint, type(row))))
+            continue
         if constraint is None or row.role != "n" or "friction" not in constraint or row.owner in stuck:
             continue
         if constraint["kind"] == "rolling" and not constraint.get("slip"):
             continue
         found.append((i, rubbing(o, now, constraint)))
     return found
+
+
+def _by_euler(o: Any, now: Any, constraint: dict, row: Any) -> np.ndarray:
+    """Force for a unit of (T_1 + T_2)/2 with T_1 = e^(mu phi) T_2: half of T_2 - T_1 on each side, along the slip."""
+    one, two = (rate for rate, *_ in _string("", constraint, now, o))
+    slip = 0.5 * (two - one)
+    v = float(slip.c[0][0])
+    if abs(v) < 1e-9:
+        raise NoSliding(constraint)
+    ratio = np.exp(now.model.number(constraint["coefficient"]) * now.model.number(constraint["angle"]))
+    return -2 * (ratio - 1) / (ratio + 1) * np.sign(v) * np.array(row("", slip, True).parts()[0])
 
 
 def sticking(o: Any, now: Any, rows: list) -> list[tuple[str, bool, Any]]:
@@ -1237,7 +1316,7 @@ def reactions(o: Any, solved: Any, s: Any) -> dict[str, float]:
         found |= sure(_of_constraint(name, constraint, now, [(solved.rows[kept[k]].role, units[k]) for k in mine]))
         if not solved.closed.get(name, True):
             found |= {key: 0.0 for key in _of_constraint(name, constraint, now, [("n", None)])}
-        if name in solved.pressed:
+        if name in solved.pressed and constraint["kind"] != "capstan":
             found |= _rubbed(name, constraint, now, solved.pressed[name])
     for k, i in enumerate(kept):
         row = solved.rows[i]
@@ -1323,6 +1402,8 @@ def _of_constraint(name: str, constraint: dict, now: Any, rows: list[tuple[str, 
     if kind == "clamp" and plane and len(constraint.get("points", [0])) <= 2:
         return {f"reaction_{role}({name})": x for role, x in rows}
     if kind == "link":
+        return {f"tension({name})": rows[0][1]}
+    if kind == "capstan":
         return {f"tension({name})": rows[0][1]}
     if kind == "string":
         strands = [x for role, x in rows if role == "n"]
