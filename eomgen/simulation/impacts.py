@@ -13,7 +13,7 @@ A flight lower than can be told from rounding is not followed: from there on the
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field
 from typing import Any
 
