@@ -191,7 +191,7 @@ def _virtual_document(model: Model, reaction: str, output: str, showing: Showing
     summary = f"{model.name}: the virtual displacement that gives {name}"
     said = prose(summary if stands else f"{summary}; degrees of freedom besides it stand still")
     symbol = found.structure.system.symbols.graph.symbol(name)
-    steps = virtual_work_step(found.reaction, symbol).statements if stands else ()
+    steps = virtual_work_step(name, found.equation, symbol).statements if stands else ()
     return plain_document(model, lambda: payload, said, *steps, prose(_written(output, count)))
 
 
