@@ -30,15 +30,12 @@ from eomgen.symbolic.expression import (
 from eomgen.symbolic.numeric import (
     Choices,
     NoValue,
+    PiecewiseNodes,
     Switch,
     Work,
-    as_chosen,
-    choices_at,
-    compared_sides,
     evaluate,
     fifty_digits,
     has_pieces,
-    piecewise_nodes,
     switches_of,
     tolerances,
 )
@@ -152,7 +149,7 @@ class Division:
         Raises:
             DerivationError: they divide by zero there.
         """
-        return as_chosen(scalars, self.nodes, piece)
+        return PiecewiseNodes(self.nodes).chosen(scalars, piece)
 
     def where_holds(self, scalars: Sequence[Scalar], decide: Callable[[tuple[Scalar, ...], State], bool]) -> Extent:
         """Extent of a property of scalars; `decide` is called with their form in each piece, and a state there."""
@@ -183,7 +180,7 @@ class Division:
             if choice < len(ends):
                 yield self._condition(x.args[0] - ends[choice])
         else:
-            a, b = compared_sides(x)
+            a, b = PiecewiseNodes.compared_sides(x)
             yield self._condition(-choice * (a - b))
 
     def _condition(self, below: Scalar) -> Condition:
@@ -213,7 +210,7 @@ def division_of(equations: EquationsOfMotion, scalars: Sequence[Scalar]) -> Divi
     if not any(map(has_pieces, scalars)):
         return None
     moving = moving_symbols(equations.system)
-    nodes = piecewise_nodes(scalars, moving)
+    nodes = PiecewiseNodes.of(scalars, moving).nodes
     if not nodes:
         return None
     known, key = equations.symbols.graph.found(division_of), (equations.system.scope.model, moving, nodes)
@@ -294,7 +291,7 @@ class _Search:
 
     def _choices(self, state: State) -> Choices | None:
         try:
-            return choices_at(self.nodes, state)
+            return PiecewiseNodes(self.nodes).choices_at(state)
         except (NoValue, ZeroDivisionError):
             return None
 

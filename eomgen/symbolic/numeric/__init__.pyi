@@ -85,23 +85,14 @@ from eomgen.symbolic.numeric.evaluation import floats_of as floats_of
 from eomgen.symbolic.numeric.evaluation import transplanted as transplanted
 from eomgen.symbolic.numeric.pieces import Choices as Choices
 
+# Nodes whose form changes with something that moves, in the order of evaluation
+from eomgen.symbolic.numeric.pieces import PiecewiseNodes as PiecewiseNodes
+
 # A quantity, and the values of it at which something changes its form
 from eomgen.symbolic.numeric.pieces import Switch as Switch
 
-# The scalars as they are where the nodes choose so: without pieces
-from eomgen.symbolic.numeric.pieces import as_chosen as as_chosen
-
-# The choice of each node at a state; None where it lies between two pieces of one
-from eomgen.symbolic.numeric.pieces import choices_at as choices_at
-
-# The two sides that are compared where x chooses; of samples their argument and 0
-from eomgen.symbolic.numeric.pieces import compared_sides as compared_sides
-
 # True if a formula consists of several pieces
 from eomgen.symbolic.numeric.pieces import has_pieces as has_pieces
-
-# The nodes whose form changes with something that moves, in the order of evaluation
-from eomgen.symbolic.numeric.pieces import piecewise_nodes as piecewise_nodes
 
 # Every switch in the scalars that something that moves can throw
 from eomgen.symbolic.numeric.pieces import switches_of as switches_of

@@ -105,11 +105,68 @@ class Switch:
         return None
 
 
-def piecewise_nodes(scalars: Iterable[Scalar], moving: frozenset[Node]) -> tuple[Node, ...]:
-    """The nodes whose form changes with something that moves, in the order of evaluation."""
-    nodes = order(filter(has_pieces, scalars))
-    active = _active(nodes, moving)
-    return tuple(x for x in nodes if (x.op in PIECEWISE or _base(x) is not None) and x in active)
+@dataclass(frozen=True)
+class PiecewiseNodes:
+    """Nodes whose form changes with something that moves, in the order of evaluation."""
+
+    nodes: tuple[Node, ...]
+
+    @staticmethod
+    def of(scalars: Iterable[Scalar], moving: frozenset[Node]) -> PiecewiseNodes:
+        """Those of some scalars."""
+        nodes = order(filter(has_pieces, scalars))
+        active = _active(nodes, moving)
+        return PiecewiseNodes(tuple(x for x in nodes if (x.op in PIECEWISE or _base(x) is not None) and x in active))
+
+    def choices_at(self, state: State) -> Choices | None:
+        """The choice of each node at a state; None where it lies between two pieces of one.
+
+        A node without a value, in a case that does not hold there, chooses 0: nothing.
+        """
+        values = evaluate(
+            [side for x in self.nodes for side in PiecewiseNodes.compared_sides(x)], state, fifty_digits(partial=True)
+        )
+        found: list[int] = []
+        for x, a, b in zip(self.nodes, values[::2], values[1::2], strict=True):
+            if a != a or b != b:
+                found.append(0)
+                continue
+            digits = fifty_digits()
+            ends = [*Sampled.of(x.args[1]).ends(digits.functions["pi"](), digits.number)] if x.op == "sampled" else [b]
+            if any(abs(a - end) <= tolerances.CERTAIN_AT_50 * (1 + abs(end)) for end in ends):
+                return None
+            passed = len([end for end in ends if a > end])
+            found.append(passed if x.op == "sampled" else 2 * passed - 1)
+        return tuple(found)
+
+    def chosen(self, scalars: Sequence[Scalar], choices: Choices) -> tuple[Scalar, ...]:
+        """The scalars as they are where the nodes choose so: without pieces.
+
+        Raises:
+            DerivationError: they divide by zero there.
+        """
+        chosen = dict(zip(self.nodes, choices, strict=True))
+        known: dict[Node, Scalar] = {}
+        for x in order(scalars):
+            if x.op == "sampled" and x in chosen:
+                known[x] = _polynomial_of(
+                    Sampled.of(x.args[1]), chosen[x], substituted(x.args[:1], known)[0], x.graph.pi
+                )
+            elif chosen.get(x):
+                known[x] = _as_chosen(x, chosen[x], substituted(PiecewiseNodes.compared_sides(x), known))
+            elif x.op == "select":
+                condition = substituted(x.args[:1], known)[0]
+                if type(condition) is not Node:
+                    known[x] = substituted((x.args[1] if condition else x.args[2],), known)[0]
+        return substituted(tuple(scalars), known) if known else tuple(scalars)
+
+    @staticmethod
+    def compared_sides(x: Node) -> tuple[Scalar, Scalar]:
+        """The two sides that are compared where x chooses; of samples their argument and 0."""
+        if x.op in COMPARING:
+            return x.args[0], x.args[1]
+        base = _base(x)
+        return x.args[0] if base is None else base, 0
 
 
 def _base(x: Node) -> Scalar | None:
@@ -121,54 +178,6 @@ def _base(x: Node) -> Scalar | None:
         base: Scalar = inside.args[0]
         return base
     return inside.args[0] if inside.op == "pow" and inside.args[1] == 2 else None
-
-
-def compared_sides(x: Node) -> tuple[Scalar, Scalar]:
-    """The two sides that are compared where x chooses; of samples their argument and 0."""
-    if x.op in COMPARING:
-        return x.args[0], x.args[1]
-    base = _base(x)
-    return x.args[0] if base is None else base, 0
-
-
-def choices_at(nodes: Sequence[Node], state: State) -> Choices | None:
-    """The choice of each node at a state; None where it lies between two pieces of one.
-
-    A node without a value, in a case that does not hold there, chooses 0: nothing.
-    """
-    values = evaluate([side for x in nodes for side in compared_sides(x)], state, fifty_digits(partial=True))
-    found: list[int] = []
-    for x, a, b in zip(nodes, values[::2], values[1::2], strict=True):
-        if a != a or b != b:
-            found.append(0)
-            continue
-        digits = fifty_digits()
-        ends = [*Sampled.of(x.args[1]).ends(digits.functions["pi"](), digits.number)] if x.op == "sampled" else [b]
-        if any(abs(a - end) <= tolerances.CERTAIN_AT_50 * (1 + abs(end)) for end in ends):
-            return None
-        passed = len([end for end in ends if a > end])
-        found.append(passed if x.op == "sampled" else 2 * passed - 1)
-    return tuple(found)
-
-
-def as_chosen(scalars: Sequence[Scalar], nodes: Sequence[Node], choices: Choices) -> tuple[Scalar, ...]:
-    """The scalars as they are where the nodes choose so: without pieces.
-
-    Raises:
-        DerivationError: they divide by zero there.
-    """
-    chosen = dict(zip(nodes, choices, strict=True))
-    known: dict[Node, Scalar] = {}
-    for x in order(scalars):
-        if x.op == "sampled" and x in chosen:
-            known[x] = _polynomial_of(Sampled.of(x.args[1]), chosen[x], substituted(x.args[:1], known)[0], x.graph.pi)
-        elif chosen.get(x):
-            known[x] = _as_chosen(x, chosen[x], substituted(compared_sides(x), known))
-        elif x.op == "select":
-            condition = substituted(x.args[:1], known)[0]
-            if type(condition) is not Node:
-                known[x] = substituted((x.args[1] if condition else x.args[2],), known)[0]
-    return substituted(tuple(scalars), known) if known else tuple(scalars)
 
 
 def _as_chosen(x: Node, choice: int, sides: Sequence[Scalar]) -> Scalar:
@@ -226,6 +235,6 @@ def _thrown_by(x: Node) -> Iterator[tuple[dict[Any, Any], Sequence[Scalar]]]:
     if x.op in COMPARING:
         yield linear_terms(x.args[0] - x.args[1]), (0,)
     elif x.op in ABOUT_ZERO or _base(x) is not None:
-        yield linear_terms(compared_sides(x)[0]), (0,)
+        yield linear_terms(PiecewiseNodes.compared_sides(x)[0]), (0,)
     elif x.op == "sampled":
         yield linear_terms(x.args[0]), Sampled.of(x.args[1]).ends(x.graph.pi)
