@@ -113,7 +113,7 @@ class PiecewiseNodes:
 
     @staticmethod
     def of(scalars: Iterable[Scalar], moving: frozenset[Node]) -> PiecewiseNodes:
-        """Those of some scalars."""
+        """Nodes of some scalars, as of what moves."""
         nodes = order(filter(has_pieces, scalars))
         active = _active(nodes, moving)
         return PiecewiseNodes(tuple(x for x in nodes if (x.op in PIECEWISE or _base(x) is not None) and x in active))
