@@ -444,7 +444,8 @@ def said(balance: Balance, named: NamedReaction) -> str:
     """Meaning in words of a reaction that an output names."""
     kind, _, rest = named.name.removeprefix("reaction_").partition("(")
     axis = kind.removeprefix("couple_")
-    if kind == "tension" and "," in rest:
+    constraint = balance.system.scope.model.constraints.get(named.owner)
+    if kind == "tension" and "," in rest and constraint is not None and constraint.exponent is not None:
         return f"tension of {named.owner}, side {rest.rstrip(')').rpartition(' ')[2]}"
     of_one = [j for j, k in named.combination.items() if type(k) is int and k == 1]
     if axis not in AXES and of_one and not balance.components[of_one[0]].is_wrench:
