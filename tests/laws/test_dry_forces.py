@@ -11,6 +11,8 @@ from scipy.integrate import solve_ivp
 import eomgen
 from eomgen.errors import ModelError
 
+pytestmark = pytest.mark.slow  # certificates of runs compile the code that they prove
+
 G = 9.81
 
 
