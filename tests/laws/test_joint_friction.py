@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import textwrap
 
 import numpy as np
 import pytest
@@ -611,3 +612,48 @@ def test_a_stop_along_a_slide_presses_no_friction():
         v, t = v / 2 * math.sqrt(down / up), v / 2 / up
         due.append(due[-1] + t + v / down)
     assert [impact.t for impact in result.impacts[:3]] == pytest.approx(due, rel=1e-9)
+
+
+@pytest.mark.parametrize(("torque", "rests"), [(-3, False), (-2.1, False), (-1.9, True), (0, True), (50, True)])
+def test_a_stop_and_friction_share_what_they_hold_and_neither_pulls_nor_holds_more(torque, rests):
+    """Hinge at its stop: from it only friction holds, up to 2; towards it the stop takes whatever comes."""
+    text = f"""
+    eomgen = 1
+    space = "plane"
+    coordinates = {{ q = 0.5 }}
+    bodies.bar.inertia = 1
+    [bodies.bar.joint]
+    kind = "revolute"
+    angle = "q"
+    limits = ["-inf", 0.5]
+    torque = {torque}
+    friction.torque = 2
+    """
+    found = eomgen.statics(eomgen.loads(textwrap.dedent(text)))
+    assert found.found.structure.indeterminacy == 1 and bool(found.broken) != rests
+    assert rests or "'bar_high' pushes, the joint 'bar' holds" in found.failed
+
+
+@pytest.mark.parametrize(("push", "height"), [(3.8, 0.2), (4.0, 0.2), (3.8, 1.3), (-3.8, 0.2), (-4.0, 0.2)])
+def test_a_box_on_two_rough_feet_slides_where_both_together_hold_no_more(push, height):
+    """At rest where |P| <= mu m g, and where it does not tip: |P| h <= m g b. Friction of each foot is open."""
+    text = f"""
+    eomgen = 1
+    space = "plane"
+    parameters = {{ m = 1, g = 9.81, mu = 0.4, b = 0.5 }}
+    coordinates = {{ x = 0, y = 0, q = 0 }}
+    [bodies.box]
+    mass = "m"
+    inertia = 1
+    points = {{ L = ["-b", 0], R = ["b", 0], P = [0, {height}] }}
+    joint = {{ kind = "free", x = "x", y = "y", angle = "q" }}
+    [constraints]
+    left = {{ kind = "support", point = "box.L", normal = [0, 1], unilateral = true, friction = "mu" }}
+    right = {{ kind = "support", point = "box.R", normal = [0, 1], unilateral = true, friction = "mu" }}
+    [forces]
+    weight = {{ kind = "gravity", acceleration = [0, "-g"] }}
+    push = {{ kind = "force", point = "box.P", force = [{push}, 0] }}
+    """
+    found = eomgen.statics(eomgen.loads(textwrap.dedent(text)))
+    rests = abs(push) <= 0.4 * 9.81 and abs(push) * height <= 9.81 * 0.5
+    assert found.found.structure.indeterminacy == 1 and bool(found.broken) != rests

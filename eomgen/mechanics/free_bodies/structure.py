@@ -147,11 +147,15 @@ class Structure:
 
     def _work(self, plan: VelocityPlan) -> Scalar:
         """Power of all known loads in a motion; unknown loads do no work in a motion that nothing resists."""
+        velocities = (plan.velocities[body][direction] for body, direction in self.columns)
+        return sum((f * v for f, v in zip(self.loads, velocities, strict=True)), start=0)
+
+    @property
+    def loads(self) -> ScalarRow:
+        """Known loads along every column, what they are with all reactions and unknown loads at 0."""
         applied = {(self.system.motion.index[e.body], e.direction): e.applied for e in self.balance.equations}
         given = {**self.at, **dict.fromkeys(self.unknowns, 0)}
-        loads = substituted(tuple(applied.get(column, 0) for column in self.columns), given)
-        works = zip(loads, (plan.velocities[body][direction] for body, direction in self.columns), strict=True)
-        return sum((f * v for f, v in works), start=0)
+        return tuple(substituted(tuple(applied.get(column, 0) for column in self.columns), given))
 
     @cached_property
     def stresses(self) -> tuple[dict[int, Scalar], ...]:

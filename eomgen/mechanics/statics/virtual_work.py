@@ -7,9 +7,11 @@ With one reaction R released the bodies have one motion. In it all other reactio
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
+
+import numpy as np
 
 from eomgen.errors import DerivationError, ExpressionError, UsageError
 from eomgen.frozen import dataclass
@@ -45,7 +47,7 @@ from eomgen.symbolic.expression import (
     sqrt,
     substituted,
 )
-from eomgen.symbolic.numeric import Work
+from eomgen.symbolic.numeric import NoValue, Work, tolerances
 from eomgen.symbolic.print import text_size
 
 StaticLoad = PointForce | Couple | SpreadLoad
@@ -368,6 +370,43 @@ class StaticReactions:
         return tuple(found)
 
     @cached_property
+    def excluded(self) -> tuple[str, ...]:
+        """States of contacts, in words, that no values of the indeterminate reactions satisfy at once; () if some do.
+
+        Sought in numbers: the largest margin that all of them have in an equilibrium. Left out is what is not linear:
+        friction on surfaces, and of what is pressed from both sides.
+        """
+        limits, open_ = tuple(self._limits()), {reaction.name for reaction in self.open}
+        if not any(limit.named.name in open_ for limit in limits):
+            return ()
+        try:
+            shares = _largest_margin(self.structure, limits)
+        except NoValue:
+            return ()
+        return tuple(dict.fromkeys(limit.words for limit, y in zip(limits, shares, strict=False) if y != 0))
+
+    def _limits(self) -> Iterator[Limit]:
+        """Conditions of the contacts that are linear in the reactions."""
+        names = {reaction.name: reaction.named for reaction in self.reactions}
+        for contact in self.system.scope.model.contacts:
+            if isinstance(contact.friction, JointFriction):
+                held = names.get(f"friction({contact.name})")
+                if held is not None and contact.size is not None and contact.grip is not None:
+                    most = ContactMode.size_of(self.system.scope, contact.grip)
+                    yield from (Limit(held, sign, None, most, f"{contact.words} holds") for sign in (1, -1))
+                continue
+            ways = (("reaction_n", "pushes"), ("tension", "pulls"), ("reaction_couple", "pushes"))
+            pressed = ((names.get(f"{kind}({contact.name})"), verb) for kind, verb in ways)
+            normal, verb = next(((named, verb) for named, verb in pressed if named is not None), (None, ""))
+            if normal is None or not contact.unilateral:
+                continue
+            yield Limit(normal, 1, None, 0, f"'{contact.name}' {verb}")
+            along = names.get(f"reaction_t({contact.name})")
+            if along is not None and contact.mu is not None and not contact.surface:
+                mu = self.system.scope.value(contact.mu)
+                yield from (Limit(along, sign, normal, mu, f"'{contact.name}' does not slide") for sign in (1, -1))
+
+    @cached_property
     def ranges(self) -> tuple[RestRange, ...]:
         """The ranges in which dry friction keeps it at rest."""
         return ranges_of_rest(self.system)
@@ -456,6 +495,60 @@ def name_of(call: Call, names: Container[str]) -> str:
 def argument_name(argument: Reference | Expression) -> str:
     """An argument of a call as it was written."""
     return argument.name if isinstance(argument, Reference) else argument.text
+
+
+@dataclass(frozen=True)
+class Limit:
+    """Linear condition on reactions: sign * named + share (* normal, where there is one) is not negative.
+
+    Args:
+        named: the reaction that it bounds.
+        share: the largest friction, or the coefficient.
+        words: what holds then.
+    """
+
+    named: NamedReaction
+    sign: int
+    normal: NamedReaction | None
+    share: Scalar
+    words: str
+
+
+def _largest_margin(structure: Structure, limits: Sequence[Limit]) -> np.ndarray:
+    """Shares of the limits in a contradiction; () where an equilibrium satisfies all of them.
+
+    Raises:
+        NoValue: a parameter has none.
+    """
+    from scipy.optimize import linprog
+
+    scope, n = structure.system.scope, len(structure.rows)
+
+    def numbers(scalars: Sequence[Scalar]) -> np.ndarray:
+        found = scope.numbers(substituted(tuple(scalars), structure.at))
+        if found is None:
+            raise NoValue("a parameter of the structure has no value")
+        return np.array(found, dtype=float)
+
+    def row_of(named: NamedReaction) -> np.ndarray:
+        row = np.zeros(n + 1)  # last what is given beside
+        row[[*named.combination, n]] = numbers((*named.combination.values(), named.given))
+        return row
+
+    loads, A = numbers(structure.loads), np.zeros((len(structure.columns), n + 1))
+    for j, entries in enumerate(structure.rows):
+        A[[*entries], j] = numbers(tuple(entries.values()))
+    rows = np.zeros((len(limits), n + 1))
+    for row, limit, share in zip(rows, limits, numbers([limit.share for limit in limits]), strict=True):
+        pressed = np.eye(n + 1)[n] if limit.normal is None else row_of(limit.normal)
+        row += limit.sign * row_of(limit.named) + share * pressed
+    size = 1.0 + float(np.abs(loads).max(initial=0.0))
+    above = np.column_stack([-rows[:, :n], np.ones(len(rows))])  # the margin is at most each of them
+    bounds = [(None, None)] * n + [(None, size)]
+    aim = np.append(np.zeros(n), -1.0)
+    found = linprog(aim, above, rows[:, n], A, -loads, bounds=bounds, method="highs")
+    satisfied = found.status != 0 or -found.fun >= -tolerances.COMPUTED * size
+    return np.zeros(0) if satisfied else np.asarray(found.ineqlin.marginals)
 
 
 @dataclass(frozen=True)

@@ -120,7 +120,10 @@ class Statics(Result):
     def broken(self) -> tuple[str, ...]:
         """Violated conditions of contacts, in words: then the structure is not at rest like this."""
         margins = self._numbers([(c.broken, c.margin) for c in self.found.conditions])
-        return tuple(words for words, margin in margins.items() if margin < -tolerances.COMPUTED)
+        found = [words for words, margin in margins.items() if margin < -tolerances.COMPUTED]
+        if not found and (excluded := self.found.excluded):
+            found.append(f"no equilibrium has all of this: {', '.join(excluded)}")
+        return tuple(found)
 
     @cached_property
     def sections(self) -> Sections:

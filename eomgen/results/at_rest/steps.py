@@ -289,13 +289,12 @@ MARGINS = {
 def contacts_step(statics: StaticReactions, broken: Sequence[str]) -> tuple[Step, ...]:
     """Step with the conditions on contacts that can open or slide, and those that are violated."""
     rows = tuple((c.constraint, MARGINS[c.kind], c.margin) for c in statics.conditions)
-    if not rows:
+    if not rows and not broken:
         return ()
-    statements: list[Statement] = [
-        prose("The contacts are as they were taken while none of these is negative:"),
-        Grid(("contact", "what", "formula"), rows),
-        *(prose(f"It is not at rest like this: {words}.") for words in broken),
-    ]
+    statements: list[Statement] = [prose(f"It is not at rest like this: {words}.") for words in broken]
+    if rows:
+        whole = prose("The contacts are as they were taken while none of these is negative:")
+        statements = [whole, Grid(("contact", "what", "formula"), rows), *statements]
     return (Step("contacts", "Contacts: FAILED" if broken else "Contacts", tuple(statements)),)
 
 
