@@ -270,7 +270,7 @@ def open_at_start(system: System, state: State) -> str:
 def springs_of_the_start(system: System) -> dict[str, Scalar | None]:
     """Energies of the springs that are slack at the length, or angle, which they have at the start."""
     forces = system.scope.model.forces
-    return {applied.name: applied.potential for applied in system.loads.applied if forces[applied.name].of_the_start}
+    return {applied.name: applied.potential for applied in system.loads.applied if forces[applied.name].slack_at_start}
 
 
 def pulled_at_start(system: System) -> str:

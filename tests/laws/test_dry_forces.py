@@ -364,3 +364,50 @@ def test_a_capstan_in_space_is_that_of_the_plane_and_a_way_without_a_drum_is_ref
     assert run(text, 0.5)["y1"][-1] == pytest.approx(run(ROPE, 0.5)["y1"][-1], rel=1e-12)
     with pytest.raises(ModelError, match="goes from a point about one drum to a point"):
         eomgen.loads(ROPE.replace('{ at = [0, 0], radius = "R", turn = "cw" }, ', ""))
+
+
+LOOP = """
+eomgen = 1
+space = "plane"
+parameters = { m = 1, N = 900 }
+[coordinates]
+alpha = { start = 1, speed = 4 }
+beta = { dependent = true, near = 0.5 }
+gamma = { dependent = true, near = 1.5 }
+[bodies.crank]
+shape = { kind = "rod", mass = "m", length = 0.4 }
+joint = { kind = "revolute", angle = "alpha" }
+[bodies.coupler]
+shape = { kind = "rod", mass = "m", length = 1 }
+joint = { kind = "revolute", on = "crank.end", angle = "beta - alpha" }
+[bodies.rocker]
+shape = { kind = "rod", mass = "m", length = 0.8 }
+joint = { kind = "revolute", at = [1.1, 0], angle = "gamma" }
+[constraints.B]
+kind = "pin"
+points = ["coupler.end", "rocker.end"]
+[forces.shoe]
+kind = "brake"
+body = "rocker"
+normal = "N"
+coefficient = 0.3
+radius = 0.1
+[forces.gas]
+kind = "pneumatic_cylinder"
+points = ["crank.center", "rocker.center"]
+areas = [0.002]
+volumes = [0.0005]
+retracted = 0.2
+pressures = [300000]
+outside = 100000
+exponent = 1.3
+"""
+
+
+def test_a_brake_stops_a_whole_loop_and_a_gas_spring_in_it_presses_at_the_start():
+    """It takes 27 N m times the way of the rocker, and then nothing."""
+    assert eomgen.derive(eomgen.loads(LOOP)).certify().ok
+    result = run(LOOP, 2)
+    assert senses(result, "shoe") == [1, 0] and abs(result["alpha'"][-1]) < 1e-9
+    way = result["gamma"][-1] - result["gamma"][0]
+    assert result["energy"][0] - result["energy"][-1] == pytest.approx(0.3 * 900 * 0.1 * way, rel=1e-8)

@@ -72,9 +72,9 @@ class System:
         return self.motion.scope
 
     def sliding_velocity(self, contact: Contact) -> Scalar:
-        """Sliding velocity of a closed contact with friction, along its tangent [m/s]."""
-        if contact.of_joint:
-            return self.motion.link(contact.body).s_rate[contact.variable]
+        """Sliding velocity of a closed contact with friction, along its tangent; of a joint or force its slip [m/s]."""
+        if contact.of_joint or contact.of_force:
+            return SystemScene(self.motion).slip(contact)
         return next(r.sliding for r in self.constraints.rows if r.constraint == contact.name and r.tangent)
 
     def let_go(self, coordinate: str) -> System:

@@ -327,8 +327,13 @@ class Force(Part):
 
     @property
     def of_the_start(self) -> bool:
-        """True if it is slack at the length that it has where the motion starts."""
+        """True if its law holds the length, or angle, that it has where the motion starts."""
         return self.element is not None and self.element.slack == "start"
+
+    @property
+    def slack_at_start(self) -> bool:
+        """True if it pulls and pushes nothing at that length."""
+        return self.of_the_start
 
     @property
     def own_states(self) -> tuple[OwnState, ...]:

@@ -289,6 +289,10 @@ class PneumaticCylinder(PressedCylinder):
         return () if self.flows is None else self.pressure_states(self.pressures, "absolute pressure")
 
     @property
+    def slack_at_start(self) -> bool:
+        return False  # it has its pressures there
+
+    @property
     def of_the_start(self) -> bool:
         return self.flows is None and self.length in (None, "start")
 
