@@ -185,6 +185,8 @@ class Reactions:
     def normal(self, owner: str) -> Scalar:
         """The normal reaction, positive along the constraint's normal; without friction; of a hinge's stop a couple.
 
+        Of a capstan the mean of its tensions, by which it rubs.
+
         Of a bilateral contact on a line in space sqrt(N_1^2 + N_2^2).
         """
         if self.is_open(owner):
@@ -196,9 +198,10 @@ class Reactions:
         several = [j for j, c in enumerate(self.components) if c.owner == owner and c.label.startswith("n ")]
         if several:
             return sqrt(sum((x * x for x in map(self.value, several)), start=0))
-        labels = {c.label for c in self.components if c.owner == owner and c.kind == "constraint"}
-        if "tension" in labels:
+        constraint = self.balance.system.scope.model.constraints.get(owner)
+        if constraint is not None and constraint.exponent is not None:
             return self.tension(owner)
+        labels = {c.label for c in self.components if c.owner == owner and c.kind == "constraint"}
         return self._labelled(owner, "couple" if labels == {"couple"} else "n", "normal reaction")
 
     def friction(self, owner: str, along: str = "t") -> Scalar:
