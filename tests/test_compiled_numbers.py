@@ -43,8 +43,8 @@ def test_one_module_meets_the_rationals_and_one_the_polynomials():
         for path in PACKAGE.rglob("*.py")
         for home, libraries in (
             ({"rational.py"}, "fractions|quicktions"),
-            ({"rational_polynomial.py"}, r"sympy\.polys"),
-            ({"rational_polynomial.py", "digits.py", "arithmetic.py"}, "flint"),
+            ({"polynomials.py"}, r"sympy\.polys"),
+            ({"polynomials.py", "digits.py", "arithmetic.py"}, "flint"),
         )
         if path.name not in home and re.search(rf"^\s*(from|import) ({libraries})\b", path.read_text(), re.M)
     ]
