@@ -369,7 +369,7 @@ class StaticReactions:
                 found.append(RestCondition(name, "sticks", most - function("abs", along)))
         return tuple(found)
 
-    @cached_property
+    @property
     def excluded(self) -> tuple[str, ...]:
         """States of contacts, in words, that no values of the indeterminate reactions satisfy at once; () if some do.
 
