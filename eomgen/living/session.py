@@ -6,6 +6,7 @@ import hmac
 import json
 import os
 import secrets
+import signal
 import subprocess
 import sys
 import threading
@@ -217,7 +218,8 @@ class Worker:
         self.idle.set()
         self.revision = 0
         self._hear, self._left = hear, False
-        threading.Thread(target=self._listen, daemon=True).start()
+        self._listener = threading.Thread(target=self._listen, daemon=True)
+        self._listener.start()
 
     def say(self, **request: Any) -> None:
         """Sends a request; a process that has ended does not hear it."""
@@ -233,12 +235,19 @@ class Worker:
         self.say(revision=revision, **request)
 
     def leave(self) -> None:
-        """Ends it: nothing more is heard of it."""
+        """Ends it, and what it started: nothing more is heard of it."""
         self._left = True
+        if os.name == "posix" and self.process.poll() is None:
+            with suppress(ProcessLookupError):
+                os.killpg(self.process.pid, signal.SIGKILL)
         self.process.kill()
         with suppress(subprocess.TimeoutExpired):
             self.process.wait(LONGEST_END)
-        for pipe in (self.process.stdin, self.process.stdout):
+        self._listener.join(LONGEST_END)
+        pipes = (self.process.stdin, self.process.stdout)
+        for pipe in pipes[
+            : 1 if self._listener.is_alive() else 2
+        ]:  # one that is read would wait
             with suppress(OSError):
                 assert pipe is not None
                 pipe.close()
