@@ -245,9 +245,7 @@ class Worker:
             self.process.wait(LONGEST_END)
         self._listener.join(LONGEST_END)
         pipes = (self.process.stdin, self.process.stdout)
-        for pipe in pipes[
-            : 1 if self._listener.is_alive() else 2
-        ]:  # one that is read would wait
+        for pipe in pipes[: 1 if self._listener.is_alive() else 2]:  # one that is read would wait
             with suppress(OSError):
                 assert pipe is not None
                 pipe.close()
