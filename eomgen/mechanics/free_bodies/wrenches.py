@@ -251,10 +251,8 @@ class Component:
     @property
     def unit(self) -> str:
         """Unit of a component: FORCE, or COUPLE if it has no force on any body."""
-        forces, couples = (
-            any(not is_zero(x) for effect in self.effects for x in part(effect))
-            for part in (lambda effect: effect.force, lambda effect: effect.couple)
-        )
+        forces = any(not is_zero(x) for effect in self.effects for x in effect.force)
+        couples = any(not is_zero(x) for effect in self.effects for x in effect.couple)
         along_angle = self.label == "friction" and couples  # of a thread both
         return FORCE if forces and not along_angle else COUPLE
 
