@@ -327,7 +327,7 @@ class _Proof:
         None where no reaction is found by virtual work.
         """
         plans = [(each.name, each.work.plan) for each in self.found.reactions if each.work is not None]
-        for name, plan in plans[:: 1 + (len(plans) - 1) // MOST_PLANS]:
+        for name, plan in plans[:: 1 + len(plans[1:]) // MOST_PLANS]:
             blocks = plan.blocks
             fields = [np.array(plan.numbers((*block.spin, *block.velocity)), float) for block in blocks]
             for block, field in zip(blocks, fields, strict=True):

@@ -657,3 +657,34 @@ def test_a_box_on_two_rough_feet_slides_where_both_together_hold_no_more(push, h
     found = eomgen.statics(eomgen.loads(textwrap.dedent(text)))
     rests = abs(push) <= 0.4 * 9.81 and abs(push) * height <= 9.81 * 0.5
     assert found.found.structure.indeterminacy == 1 and bool(found.broken) != rests
+
+
+@pytest.mark.parametrize("angle", [0.6, 0.7, 0.75, 1.2])
+def test_a_ladder_with_a_rough_foot_and_top_rests_where_it_is_steep(angle):
+    """tan(q) >= (1 - mu^2)/(2 mu): each of its four reactions is open, and what all of them allow is not."""
+    text = f"""
+    eomgen = 1
+    space = "plane"
+    parameters = {{ m = 10, g = 9.81, mu = 0.45, L = 3 }}
+    coordinates = {{ x = 0, y = 0, q = {angle} }}
+    [bodies.ladder]
+    mass = "m"
+    inertia = 1
+    center = ["L/2", 0]
+    points = {{ F = [0, 0], T = ["L", 0] }}
+    joint = {{ kind = "free", x = "x", y = "y", angle = "q" }}
+    [constraints]
+    floor = {{ kind = "support", point = "ladder.F", normal = [0, 1], unilateral = true, friction = "mu" }}
+    [constraints.wall]
+    kind = "support"
+    point = "ladder.T"
+    normal = [-1, 0]
+    at = ["L*cos({angle})", 0]
+    unilateral = true
+    friction = "mu"
+    [forces]
+    weight = {{ kind = "gravity", acceleration = [0, "-g"] }}
+    """
+    found = eomgen.statics(eomgen.loads(textwrap.dedent(text)))
+    rests = math.tan(angle) >= (1 - 0.45**2) / (2 * 0.45)
+    assert len(found.found.open) == 4 and bool(found.broken) != rests and found.certify().ok
