@@ -29,6 +29,7 @@ from eomgen.errors import DerivationError, MissingValues, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, derived_by
 from eomgen.mechanics.free_bodies import Inverse, Reactions, equations_of_motion
+from eomgen.mechanics.instant import Quantities
 from eomgen.mechanics.start import Start
 from eomgen.model import Model, nearest
 from eomgen.proof import Certificate, Printed, certify
@@ -367,7 +368,7 @@ class Equations(Result):
         """
         if not any(part.driven for part in self.model.coordinates.values()):
             return self.graph
-        system = System.of(self.model, self.system.modes, with_laws=True)
+        system = Quantities.put_into_rates(System.of(self.model, self.system.modes, with_laws=True))
         alike = len(system.constraints.closing) == len(self.system.constraints.closing) and len(
             system.symbols.u
         ) == len(self.speeds)

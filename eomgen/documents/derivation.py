@@ -25,6 +25,7 @@ from eomgen.documents.reaction_steps import (
     along_the_motion,
     kinetostatic_steps,
     letters_of,
+    rates_in_letters,
     reactions_step,
     reactions_table_step,
 )
@@ -114,7 +115,13 @@ def derivation_of(
         last = (*last, *along_the_motion(equations, reader, letters))
     last = (*integral_steps(equations, reader, in_time), *last)
     written = Written(
-        (*setting_steps(system), *steps, *result.steps, *states_step(system, reader), *last),
+        (
+            *setting_steps(system),
+            *steps,
+            *result.steps,
+            *states_step(system, reader, rates_in_letters(system, letters)),
+            *last,
+        ),
         result.equations,
         result.definitions,
     )

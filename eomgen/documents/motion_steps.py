@@ -400,8 +400,12 @@ def _coordinates(system: System) -> Step:
     return Step("coordinates", "Coordinates", tuple(statements))
 
 
-def states_step(system: System, reader: Reader) -> tuple[Step, ...]:
-    """The rates of the states of first order; no step where there are none."""
+def states_step(system: System, reader: Reader, in_letters: Mapping[Node, Scalar]) -> tuple[Step, ...]:
+    """The rates of the states of first order; no step where there are none.
+
+    Args:
+        in_letters: the rates in which reactions stand, with the symbols of these.
+    """
     scope = system.scope
     if not scope.symbols.z:
         return ()
@@ -410,7 +414,12 @@ def states_step(system: System, reader: Reader) -> tuple[Step, ...]:
     words = (
         "The states of first order change as declared:" if several else "The state of first order changes as declared:"
     )
-    return (Step("states", "States of first order", (prose(words), *page(reader, rates))),)
+    declared: list[Statement] = [prose(words)]
+    if scope.reactions_in_rates:
+        lettered = page(reader, [(Rate(z), rate) for z, rate in in_letters.items()])
+        by_balance = prose("With the reactions by the balance of forces and moments of every body:")
+        declared = [*(declared if lettered else ()), *lettered, by_balance]
+    return (Step("states", "States of first order", (*declared, *page(reader, rates))),)
 
 
 def _as_given(scope: Scope, q: Node, rate: Scalar) -> list[Statement]:

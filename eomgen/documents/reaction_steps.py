@@ -19,6 +19,7 @@ from eomgen.documents.statements import Code, Formula, Law, Meaning, Name, Omitt
 from eomgen.errors import DerivationError
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, derived_by
 from eomgen.mechanics.free_bodies import BodyEquation, Reactions
+from eomgen.mechanics.instant import Quantities
 from eomgen.mechanics.integrals import rates_and_extent
 from eomgen.mechanics.start import ExactStart
 from eomgen.model import called
@@ -39,6 +40,22 @@ def letters_of(system: System) -> Lettered | str:
         return lettered(Reactions.of(shown_system(system), short=True), system.scope.names)
     except DerivationError as error:
         return f"{error.what}; {error.fix}" if error.fix else error.what
+
+
+def rates_in_letters(system: System, letters: Lettered | str) -> dict[Node, Scalar]:
+    """The rates of states in which reactions stand, with the symbols of these; none where friction depends on them."""
+    scope = system.scope
+    if isinstance(letters, str) or letters.contacts or not scope.reactions_in_rates:
+        return {}
+    by_components, symbols = letters.reactions.by_components
+    quantities = Quantities(letters.balance.system, balance=by_components)
+    known = dict(zip(symbols, letters.symbols, strict=True))
+    found: dict[Node, Scalar] = {}
+    for z in scope.symbols.z:
+        law = scope.model.states[z.name].rate
+        if law is not None and law.all_calls:
+            found[z] = substituted((law.evaluate(scope.names, quantities.value),), known)[0]
+    return found
 
 
 def reactions_step(

@@ -66,6 +66,11 @@ Displacement = Annotated[Expression, FormulaRule("m", "", CONFIGURATION)]
 PLACES = ("x", "y", "z", "angle")
 VELOCITIES = ("vx", "vy", "vz", "omega", "omega_x", "omega_y", "omega_z")
 Gap = Annotated[Expression, FormulaRule(None, "", CONFIGURATION, functions=PLACES)]
+OF_REACTIONS = (
+    *("reaction_x", "reaction_y", "reaction_z", "reaction_n", "reaction_t", "reaction_s"),
+    *("reaction_couple", "reaction_couple_x", "reaction_couple_y", "reaction_couple_z"),
+    *("tension", "friction", "multiplier", "drive"),
+)
 MotionEnergy = Annotated[Expression, FormulaRule("J", "", SPEEDS)]
 Energy = Annotated[Expression, FormulaRule("J", "", CONFIGURATION)]
 LinearDamping = Annotated[Expression, FormulaRule("N*s/m", "", MOTION, usually=TAKES)]
@@ -75,7 +80,7 @@ ForceFormula = Annotated[Expression, FormulaRule("N", "", MOTION)]
 Torque = Annotated[Expression, FormulaRule("N*m", "", MOTION)]
 FlowRate = Annotated[Expression, FormulaRule("kg/s", "", MOTION)]
 RateLaw = Annotated[Expression, FormulaRule(None, "", RATES)]
-RateOfState = Annotated[Expression, FormulaRule(None, "", STATE)]
+RateOfState = Annotated[Expression, FormulaRule(None, "", STATE, functions=OF_REACTIONS)]
 VelocityLaw = Annotated[Expression, FormulaRule(None, "", SPEEDS, functions=(*PLACES, *VELOCITIES))]
 Pull = Annotated[Expression, FormulaRule("N", "", MOTION, also=("r", "r'"), also_in="m")]
 TimeLaw = Annotated[Expression, TimeLawRule(None, "", TIME)]

@@ -154,7 +154,8 @@ class Speed(Part):
 class StateVariable(Part):
     """A state of first order: a current, a pressure, a temperature, an integral, z' = `rate`.
 
-    Its rate may hold the whole state, accelerations and inputs, and forces may depend on it; it moves no body itself.
+    Its rate may hold the whole state, accelerations, reactions and inputs, and forces may depend on it; it moves no body
+    itself.
 
     Args:
         rate: z' [its unit in SI per second].

@@ -17,10 +17,11 @@ from eomgen.codegen import Program, RightHandSide
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, exact_accelerations, with_accelerations
-from eomgen.mechanics.free_bodies import Balance, Indeterminate, Reactions
+from eomgen.mechanics.free_bodies import Indeterminate, Reactions
 from eomgen.mechanics.instant import Quantities
 from eomgen.model import FUNCTIONS, OutputSource
 from eomgen.proof.check import differing
+from eomgen.proof.declared_loads import balanced_least
 from eomgen.proof.printed import least_multipliers
 from eomgen.proof.states import TrialState, pushes_of, with_inputs
 from eomgen.proof.trials import Trials, refuse_noise
@@ -205,23 +206,6 @@ class NumericState:
         moved = ({node: x + sign * turns[node] for node, x in self.numbers.items()} for sign in (1, -1))
         first, last = (replace(self, numbers=numbers) for numbers in moved)
         return first, last
-
-
-def balanced_least(balance: Balance, known: Mapping[Node, Any]) -> tuple[np.ndarray, np.ndarray]:
-    """Components of least norm with which every body is in equilibrium, and, by columns, those that may be added.
-
-    Args:
-        known: all symbols with 50 digits, accelerations included.
-    """
-    rows: list[tuple[Mapping[int, Scalar], Scalar]] = [(e.coefficients, e.needed) for e in balance.equations]
-    rows += [({j: 1}, x) for j, x in balance.given.items()]
-    A, b = np.zeros((len(rows), len(balance.names))), np.zeros(len(rows))
-    for i, (row, needed) in enumerate(rows):
-        *entries, right = evaluate((*row.values(), needed), known, fifty_digits())
-        A[i, list(row)], b[i] = [float(x) for x in entries], float(right)
-    U, sizes, V = np.linalg.svd(A)
-    rank = int(np.sum(sizes > tolerances.RANK_NEARBY * max(sizes, default=0.0)))
-    return V[:rank].T @ ((U[:, :rank].T @ b) / sizes[:rank]), V[rank:].T
 
 
 def moving_states(equations: EquationsOfMotion) -> Iterator[NumericState]:

@@ -6,8 +6,12 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from random import Random
 from typing import Any
 
+import numpy as np
+
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, System
+from eomgen.mechanics.free_bodies import Balance, Reactions
+from eomgen.mechanics.instant import Quantities
 from eomgen.mechanics.kinematics import (
     BodyLink,
     ContactMode,
@@ -26,7 +30,7 @@ from eomgen.proof.states import (
     pushes_of,
     way_through,
 )
-from eomgen.symbolic.expression import Scalar, State, Vector, is_zero
+from eomgen.symbolic.expression import Call, Node, Scalar, State, Vector, is_zero
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 
 # -------- declared work ---------------------------------------------------------------------------------------
@@ -296,6 +300,65 @@ class Declared(InNumbers):
         return self.scene.plane
 
 
+# -------- reactions in numbers --------------------------------------------------------------------------------
+# Balance of bodies, a state -> reactions in numbers, by its equations as they stand there: nothing is eliminated.
+
+
+REFINEMENTS = 4  # of components: each adds the digits that doubles are sure of
+
+
+def balanced_least(balance: Balance, known: Mapping[Node, Any]) -> tuple[np.ndarray, np.ndarray]:
+    """Components of least norm with which every body is in equilibrium, and, by columns, those that may be added.
+
+    Args:
+        known: all symbols with 50 digits, accelerations included.
+    """
+    A, b = (x.astype(float) for x in _rows(balance, known))
+    U, sizes, V, rank = _parts(A)
+    return V[:rank].T @ ((U[:, :rank].T @ b) / sizes[:rank]), V[rank:].T
+
+
+def _rows(balance: Balance, known: Mapping[Node, Any]) -> tuple[np.ndarray, np.ndarray]:
+    """A, b of A x = b: the equations of the bodies, and components that are given, with 50 digits."""
+    rows: list[tuple[Mapping[int, Scalar], Scalar]] = [(e.coefficients, e.needed) for e in balance.equations]
+    rows += [({j: 1}, x) for j, x in balance.given.items()]
+    A, b = np.full((len(rows), len(balance.names)), 0, dtype=object), np.full(len(rows), 0, dtype=object)
+    for i, (row, needed) in enumerate(rows):
+        *entries, b[i] = evaluate((*row.values(), needed), known, fifty_digits())
+        A[i, list(row)] = entries
+    return A, b
+
+
+def _parts(A: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
+    U, sizes, V = np.linalg.svd(A)
+    return U, sizes, V, int(np.sum(sizes > tolerances.RANK_NEARBY * max(sizes, default=0.0)))
+
+
+def reaction_at(system: System, known: State, call: Call) -> Any:
+    """A reaction at a state with its accelerations, by components that hold every body in equilibrium there.
+
+    Args:
+        known: all symbols with 50 digits.
+    """
+    if reaction_at not in system.found:
+        system.found[reaction_at] = Reactions.of(system, short=True)
+    reactions: Reactions = system.found[reaction_at]
+    by_components, symbols = reactions.by_components
+    A, b = _rows(reactions.balance, known)
+    U, sizes, V, rank = _parts(A.astype(float))
+    inverse, digits = (V[:rank].T / sizes[:rank]) @ U[:, :rank].T, fifty_digits()
+    x = np.full(A.shape[1], digits.number(0), dtype=object)
+    for _ in range(REFINEMENTS):
+        left = b - A @ x
+        size = max(map(abs, left), default=0)
+        if size == 0:
+            break
+        step = inverse @ np.array([float(y / size) for y in left])
+        x = x + np.array([digits.number(y) * size for y in step.tolist()], dtype=object)
+    numbers = dict(zip(symbols, x, strict=False))
+    return evaluate((Quantities(system, balance=by_components).value(call),), {**known, **numbers}, digits)[0]
+
+
 # -------- rates of states -------------------------------------------------------------------------------------
 
 
@@ -303,7 +366,8 @@ def declared_state_rates(system: System, known: State) -> dict[str, Any]:
     """{state: z'} of the states of first order at a state with its accelerations, by the file's own texts.
 
     Each name in a text is put in as a number, the rate of another state by its own text: nothing of the system's graph
-    stands between. Those that forces bring along are worked in numbers (`Force.rates`).
+    stands between. Those that forces bring along are worked in numbers (`Force.rates`), and a reaction is that with
+    which the equations of the bodies balance in numbers.
     """
     names = system.scope.names
     of_forces = {f"{name}'": rate for name, rate in _rates_in_forces(system, known).items()}
@@ -315,10 +379,13 @@ def declared_state_rates(system: System, known: State) -> dict[str, Any]:
     own = {name: graph.symbol(f"({name})") for name in standing}  # no name of a model has parentheses
     values = dict(zip((own[x] for x in needed), evaluate([names[x] for x in needed], known, digits), strict=True))
     values |= {own[name]: rate for name, rate in of_forces.items() if name in own}
+    reactions = system.scope.reactions_in_rates
+    values |= {symbol: reaction_at(system, known, call) for symbol, call in reactions.items()}
     found: dict[str, Any] = {name[:-1]: rate for name, rate in of_forces.items()}
     while laws:
         name = next(x for x, law in laws.items() if law.names.isdisjoint(laws))  # by rates that are there
-        scalar = laws.pop(name).evaluate({**own, "pi": graph.pi})
+        tables = {key: x for key, x in names.items() if key.endswith("(")}
+        scalar = laws.pop(name).evaluate({**own, **tables, "pi": graph.pi}, lambda call: graph.symbol(str(call)))
         found[name[:-1]] = evaluate((scalar,), values, digits)[0]
         if name in own:
             values[own[name]] = found[name[:-1]]

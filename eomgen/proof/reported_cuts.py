@@ -16,9 +16,8 @@ from eomgen.mechanics.dynamics import EquationsOfMotion, System, exact_accelerat
 from eomgen.mechanics.free_bodies import NamedReaction
 from eomgen.mechanics.kinematics import SystemScene
 from eomgen.mechanics.statics import SectionForces, StaticReactions
-from eomgen.proof.at_a_state import balanced_least
 from eomgen.proof.check import Check, Tally, differing
-from eomgen.proof.declared_loads import declared_pushes
+from eomgen.proof.declared_loads import balanced_least, declared_pushes
 from eomgen.proof.states import SECOND_STEP, InNumbers, way_through, with_inputs
 from eomgen.symbolic.expression import LONGEST, Node, Scalar, State, parse, symbols_of
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances

@@ -22,9 +22,8 @@ import numpy as np
 from eomgen.frozen import dataclass
 from eomgen.mechanics.free_bodies import NamedReaction, imbalance
 from eomgen.mechanics.statics import InfluenceLine, SectionForces, SectionPiece, StaticReactions
-from eomgen.proof.at_a_state import balanced_least
 from eomgen.proof.check import Certificate, Check, Tally, attempted, checked, first_wrong
-from eomgen.proof.declared_loads import acting_otherwise
+from eomgen.proof.declared_loads import acting_otherwise, balanced_least
 from eomgen.proof.declared_threads import STRUNG, has_threads, strung_otherwise
 from eomgen.proof.drawn import DrawnCurve, DrawnPanel, ReportedPush, said_of, space_sections_drawn, structure_drawn
 from eomgen.proof.free_bodies import named_otherwise

@@ -15,6 +15,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Rank, Row, holds_identically
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, assembled_by_recursion
 from eomgen.mechanics.free_bodies import equations_of_motion, with_friction
+from eomgen.mechanics.instant import Quantities
 from eomgen.mechanics.kinematics import GROUND, BodyLink, ContactMode, ContactModes
 from eomgen.model import Contact, Coordinate, Model, PointForce, Table
 from eomgen.simulation.contacts import Configuration, ContactEvents, bounds_of, changed, on_pieces
@@ -46,7 +47,7 @@ def integrated_system(system: System) -> System:
     """
     if system.free is None or system.scope.model.speeds:
         return system
-    return system.free if system.singular_blocks else system
+    return Quantities.put_into_rates(system.free) if system.singular_blocks else system
 
 
 def one_phase(declared: System, equations: EquationsOfMotion, p: np.ndarray, target: str | None = None) -> PhaseModel:
@@ -239,10 +240,10 @@ class PhaseModels:
         contacts are not those of each alone. Then all that can end are released together, and those that hold close.
         """
         if not configuration.open or self._straight:
-            return _opened(model, configuration.modes)
+            return Quantities.put_into_rates(_opened(model, configuration.modes))
         all_open = {**configuration.modes, **dict.fromkeys(self.ends, OPEN)}
         released = _opened(model, all_open)
-        return System.of(released.scope.model, configuration.modes, begun_as=released)
+        return Quantities.put_into_rates(System.of(released.scope.model, configuration.modes, begun_as=released))
 
     @property
     def _straight(self) -> bool:

@@ -608,7 +608,7 @@ def study_of(model: Model) -> Study:
 
     def made() -> Study:
         contacts = ContactsAtStart.of(model)
-        return Study(System.of(model, contacts.modes), contacts.assumptions)
+        return Study(Quantities.put_into_rates(System.of(model, contacts.modes)), contacts.assumptions)
 
     return recalled(model, study_of, made)
 
@@ -618,14 +618,14 @@ def study_at_rest(model: Model) -> Study:
 
     def made() -> Study:
         modes, assumptions = _contacts_at_rest(model)
-        return Study(System.of(model, modes), assumptions)
+        return Study(Quantities.put_into_rates(System.of(model, modes)), assumptions)
 
     return recalled(model, study_at_rest, made)
 
 
 def study_of_modes(model: Model, modes: ContactModes | None = None) -> Study:
     """The study of a model with its contacts as they are named, what is not named closed."""
-    return Study(System.of(model, modes or {}))
+    return Study(Quantities.put_into_rates(System.of(model, modes or {})))
 
 
 def exact_numbers(values: Mapping[Node, Scalar | float]) -> dict[Node, Scalar]:

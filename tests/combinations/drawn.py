@@ -979,13 +979,16 @@ class Drawing:
                 old.pop("speed", None)
 
     def state(self) -> None:
-        """What follows a coordinate late, or its acceleration; what pushes by it."""
+        """What follows a coordinate late, or its acceleration, or a reaction; what pushes by it."""
         how = self.levels["state"]
         if how == "none":
             return
         q = self.rng.choice([x for x in self.coordinates if self.kinds[x] != "pure"])
         unit = "m" if self.kinds[q] == "length" else "rad"
-        if how == "accelerated":
+        held = [b for b, x in self.bodies.items() if x["joint"]["kind"] not in ("placed", "free", "planar")]
+        if how == "reacting" and held:
+            declared = {"rate": f"w*(reaction_x({held[0]})/F0 - z1)", "unit": "1"}
+        elif how in ("accelerated", "reacting"):
             declared = {"rate": f"{q}'' - w*z1", "unit": f"{unit}/s"}
         else:
             declared = {"rate": f"w*({q} - z1) + {q}'/3" if self.rng.random() < 0.5 else f"w*({q} - z1)", "unit": unit}

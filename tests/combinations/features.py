@@ -77,7 +77,7 @@ FACTORS: dict[str, tuple[str, ...]] = {
     "contact": ("none", "open", "closed", "sliding", "sticking", "ending", "viscous", "bouncing"),
     "speeds": ("rates", "declared", "omega"),
     "input": ("none", "expression", "table", "steps", "controller"),
-    "state": ("none", "follows", "pushes", "accelerated"),
+    "state": ("none", "follows", "pushes", "accelerated", "reacting"),
     "units": ("none", "si", "other"),
     "parameters": ("numbers", "formulas", "valueless"),
     "symbols": ("plain", "declared"),

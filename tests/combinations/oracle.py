@@ -12,6 +12,7 @@ coefficients along the motion, never from derivatives of formulas. Imports nothi
 from __future__ import annotations
 
 import itertools
+import re
 from dataclasses import dataclass, field, replace
 
 import laws
@@ -316,8 +317,20 @@ class Oracle:
     def state_rates(self, s: State, a: np.ndarray) -> np.ndarray:
         """z' of the states at a state with accelerations."""
         now = self.reduced(s, a)
-        laws_of = ((laws.STATES[z.get("law", "rate")], z) for z in self.model.states.values())
+        laws_of = ((laws.STATES[z.get("law", "rate")], self._with_reactions(z, s)) for z in self.model.states.values())
         return np.array([law(now, z) for law, z in laws_of])
+
+    def _with_reactions(self, declared: dict, s: State) -> dict:
+        """A state in whose rate the reactions are numbers, those of the state's own accelerations."""
+        calls = re.findall(r"reaction_\w+\(\w+\)", str(declared.get("rate", "")))
+        if not calls:
+            return declared
+        found, rate = self.reactions(self.solve(s), s), declared["rate"]
+        for call in calls:
+            if call not in found:
+                raise NoAnswer(f"{call} has no single value")
+            rate = rate.replace(call, f"({found[call]!r})")
+        return declared | {"rate": rate}
 
     def speeds_of(
         self, s: State, speeds: tuple[str, ...], a: np.ndarray | None = None

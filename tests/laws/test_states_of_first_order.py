@@ -348,3 +348,145 @@ def test_a_state_that_follows_what_nothing_holds_rests_anywhere():
     (place,) = eomgen.statics(eomgen.loads(FOLLOWER.replace("1.1 - k*x", "0*k*x"))).entries()["equilibria"]
     assert place["states"]["z"].value == pytest.approx(place["coordinates"]["x"].value)
     assert "places beside it are at rest, too" in place["stability"]["why"]
+
+
+HEATED = """
+eomgen = 1
+space = "plane"
+[parameters]
+m = { value = 2, unit = "kg" }
+g = { value = 9.81, unit = "m/s^2" }
+mu = 0.2
+C = { value = 5, unit = "J/K" }
+k = { value = 1e-9, unit = "m^2/N" }
+[coordinates]
+x = { speed = 3, unit = "m" }
+[states]
+T = { unit = "K", rate = "mu*reaction_n(block)*abs(x')/C", about = "temperature above the room's" }
+W = { unit = "m^3", rate = "k*reaction_n(block)*abs(x')", about = "worn volume by Archard's law" }
+[bodies.block]
+mass = "m"
+joint = { kind = "prismatic", displacement = "x", axis = [1, 0], friction = { coefficient = "mu" } }
+[forces.weight]
+kind = "gravity"
+acceleration = [0, "-g"]
+"""
+
+
+def test_a_block_that_rubs_to_a_standstill_heats_by_all_its_energy():
+    """C T = m v^2/2, W = k N v^2/(2 mu g) of the reaction's own N = m g; both stay while it sticks; batches too."""
+    model = eomgen.loads(HEATED)
+    run = eomgen.simulate(model, time=3, target="numpy", rtol=1e-10, atol=1e-13)
+    assert len(run.phases) == 2 and run["T"][-1] == pytest.approx(2 * 9 / 2 / 5, rel=1e-8)
+    assert run["W"][-1] == pytest.approx(1e-9 * 2 * 9 / (2 * 0.2), rel=1e-8)
+    many = eomgen.simulate_many(model, time=3, start={"x'": [1, 2]}, target="numpy")
+    assert many["T"][:, -1] == pytest.approx([0.2, 0.8], rel=1e-6)
+    assert eomgen.derive(model).certify().ok
+
+
+CELL = """
+eomgen = 1
+space = "plane"
+parameters = { m = 2, l = 0.5, g = 9.81, tau = 0.1, k = 30, c = 0.2, I = 0.05 }
+coordinates.theta = { start = 0.3, unit = "rad" }
+states.F = { unit = "N", rate = "(reaction_y(rod) - F)/tau", start = 1, about = "force that a load cell shows" }
+bodies.rod.mass = "m"
+bodies.rod.center = ["l", 0]
+bodies.rod.inertia = "I"
+bodies.rod.joint = { kind = "revolute", angle = "theta", stiffness = "k", damping = "c" }
+forces.weight = { kind = "gravity", acceleration = [0, "-g"] }
+outputs.F_rest = { value = "F", at = "equilibrium" }
+"""
+
+
+def cell(x: np.ndarray) -> np.ndarray:
+    """(theta', theta'', F') by the motion of the mass centre: R_y = m (g + (l sin theta)'')."""
+    theta, w, F = x
+    a = (-30 * theta - 0.2 * w - 2 * 9.81 * 0.5 * np.cos(theta)) / (0.05 + 2 * 0.25)
+    R = 2 * (9.81 + 0.5 * (np.cos(theta) * a - np.sin(theta) * w**2))
+    return np.array([w, a, (R - F) / 0.1])
+
+
+def test_a_load_cell_follows_the_reaction_of_its_hinge():
+    """A rate that holds a reaction is one that holds accelerations: run, slopes, rest and its sensitivity."""
+    from scipy.integrate import solve_ivp
+
+    model = eomgen.loads(CELL)
+    run = eomgen.simulate(model, time=0.4, target="numpy", rtol=1e-11, atol=1e-11)
+    right = solve_ivp(lambda t, x: cell(x), (0, 0.4), [0.3, 0, 1], rtol=1e-12, atol=1e-12).y[:, -1]
+    assert run.x[-1] == pytest.approx(right, rel=1e-8)
+    equations, at = eomgen.derive(model), np.array([0.3, 0.0, 1.0])
+    slopes = [(cell(at + d) - cell(at - d)) / 2e-6 for d in 1e-6 * np.eye(3)]
+    assert equations.rhs_jacobian()[0] == pytest.approx(np.array(slopes).T, rel=1e-6, abs=1e-6)
+    assert eomgen.solve(model)["F_rest"].value == pytest.approx(2 * 9.81)
+    assert eomgen.sensitivity(model, of="equilibrium", to="m").matrix[1, 0] == pytest.approx(9.81)
+    assert equations.certify().ok and "F' = (R_rod_y - F)/tau" in equations.render("text")
+
+
+def test_small_motions_follow_a_reaction():
+    """dF' = (m l cos(theta) da - dF)/tau with da of the equations: formula 8 with the reaction of z."""
+    found = eomgen.linearize(eomgen.loads(CELL))
+    theta = found.entries()["state"]["theta"].value
+    at = np.array([theta, 0.0, 2 * 9.81])
+    assert cell(at) == pytest.approx(np.zeros(3), abs=1e-9)
+    slopes = [(cell(at + d) - cell(at - d)) / 2e-6 for d in 1e-6 * np.eye(3)]
+    assert found.A == pytest.approx(np.array(slopes).T, rel=1e-6, abs=1e-6) and found.certify().ok
+
+
+@pytest.mark.parametrize(
+    ("equation", "right"),
+    [
+        ("F' = (reaction_y(rod) - F)/tau", True),
+        ("tau*F' + F = m*g + m*l*cos(theta)*theta'' - m*l*sin(theta)*theta'^2", True),
+        ("F' = (m*g - F)/tau", False),
+        ("F = m*g", True),
+        ("F = m*g*cos(theta)", False),
+    ],
+)
+def test_an_equation_of_a_rate_with_a_reaction_is_judged(equation, right):
+    """By the reaction's name, or by what the balance of the body gives for it; at rest by the weight."""
+    assert bool(eomgen.verify(eomgen.loads(CELL), equation)) == right
+
+
+def test_a_rate_follows_reactions_where_coordinates_are_dependent():
+    """A crank at a dead centre is integrated over all rates: there the reaction is that of the whole, too."""
+    text = (MODELS.parent / "docs" / "examples" / "slider.toml").read_text(encoding="utf-8")
+    model = eomgen.loads(text + '\n[states.z]\nrate = "reaction_x(crank) - 2*z"\n[outputs]\nR = "reaction_x(crank)"\n')
+    run = eomgen.simulate(model, time=0.2, target="numpy", rtol=1e-10, atol=1e-10, samples=2001)
+    t, R = run.t, run["R"]
+    z = np.exp(-2 * t[-1]) * np.trapezoid(R * np.exp(2 * t), t)
+    assert run["z"][-1] == pytest.approx(z, rel=1e-5) and eomgen.derive(model).certify().ok
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('damping = "c"', "torque = \"-c*theta' + l*F'\"", "algebraic loop: it pushes by F', which follows from the"),
+        ('mass = "m"', 'mass = "m + tau*F"', "depends on an acceleration or a reaction"),
+        ("reaction_y(rod)", "reaction_n(rod)", "states.F.rate: 'reaction_n(rod)' in the rate of a state"),
+        ("reaction_y(rod)", "speed(rod.origin)", "cannot stand in the rate of state 'F'"),
+        ("reaction_y(rod)", "reaction_couple(rod)", "have no sum"),
+        ("reaction_y(rod)", "reaction_y(rud)", "did you mean 'rod'"),
+    ],
+)
+def test_a_reaction_that_cannot_stand_in_a_rate_is_refused_by_name(old, new, words):
+    """A loop, a mass, what the part does not have; other functions, other units, other names."""
+    with pytest.raises((DerivationError, ModelError)) as refused:
+        eomgen.derive(eomgen.loads(CELL.replace(old, new))).certify()
+    assert words in str(refused.value)
+
+
+def test_an_indeterminate_reaction_in_a_rate_is_refused_by_name():
+    """A bar between two pins has no single force along itself; across it has one."""
+    text = """
+eomgen = 1
+space = "plane"
+coordinates.x = { speed = 1 }
+states.z = { rate = "reaction_x(A) - z" }
+points.P = [1, 0]
+bodies.bar = { mass = 1, inertia = 1, joint = { kind = "fixed" }, points = { end = [1, 0] } }
+bodies.cart = { mass = 1, joint = { kind = "prismatic", axis = [1, 0], displacement = "x" } }
+constraints.A = { kind = "pin", points = ["bar.end", "P"] }
+"""
+    with pytest.raises(DerivationError, match=r"reaction_x.A. is statically indeterminate"):
+        eomgen.derive(eomgen.loads(text))

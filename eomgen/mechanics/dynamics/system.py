@@ -245,18 +245,20 @@ class System:
 
 
 def _refuse_loops(scope: Scope) -> None:
-    """Refuses what pushes by the rate of a state that follows from the accelerations, which follow from the push.
+    """Refuses what pushes by the rate of a state that follows from accelerations or reactions, and these from the push.
 
     Raises:
         DerivationError: the part that holds such a rate is named.
     """
     rates = {f"{z.name}'": rate for z, rate in zip(scope.symbols.z, scope.state_rates, strict=True)}
-    looped = {name for name, rate in rates.items() if depends_on(rate, scope.symbols.a)}
+    forces = scope.reactions_in_rates
+    looped = {name for name, rate in rates.items() if depends_on(rate, (*scope.symbols.a, *forces))}
     for leaf, expression in scope.model.expressions if looped else ():
         held = sorted(looped & expression.names)
         if held and leaf.path[0] not in ("states", "outputs", "given", "questions", "linearize"):
-            what = f"an algebraic loop: it pushes by {held[0]}, which follows from the accelerations, and these from it"
-            fix = f"let the rate of '{held[0][:-1]}' hold no acceleration, or let the push depend on the state itself"
+            of = "reactions" if depends_on(rates[held[0]], forces) else "accelerations"
+            what = f"an algebraic loop: it pushes by {held[0]}, which follows from the {of}, and these from it"
+            fix = f"let the rate of '{held[0][:-1]}' hold no {of[:-1]}, or let the push depend on the state itself"
             raise DerivationError(what, ".".join(map(str, leaf.path[:2])), fix)
 
 

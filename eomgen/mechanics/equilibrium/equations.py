@@ -14,6 +14,7 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Constraints
 from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.instant import Quantities
 from eomgen.mechanics.kinematics import Loads, Scope, SystemScene
 from eomgen.mechanics.state import Doubles
 from eomgen.model import Table
@@ -214,6 +215,7 @@ class StaticEquations:
         """
         _refuse_dry_friction(system)
         system, held = system.with_drives_held()
+        system = Quantities.put_into_rates(system)
         free = system.free or system
         scope = free.scope
         driven = [q for q in scope.symbols.q if scope.model.coordinates[q.name].driven]
@@ -225,7 +227,9 @@ class StaticEquations:
         loads = (standing.free or standing).loads
         forces = loads.generalized_forces
         _refuse_signs_of_rates(forces, free)
-        rates = _rates_at_rest(standing.free or standing, given)
+        holds_reactions = standing.scope.reactions_in_rates  # those are of the reduced system
+        at_rest = standing if holds_reactions else standing.free or standing
+        rates = _rates_at_rest(at_rest, {**given, **at_rest.still})
         Q = (*_at_rest(forces, given, free), *rates)
         unbalanced = (*substituted(loads.powered_forces, given), *rates)
         phi = _relations(system, given, q)
@@ -257,7 +261,7 @@ class StaticEquations:
         moving = any(not is_zero(x) and not driven for x, driven in zip(scope.nu, given, strict=True))
         if system.free is None or not scope.combines or not moving:
             return system
-        return _made_of(system.free, system.free.scope)
+        return Quantities.put_into_rates(_made_of(system.free, system.free.scope))
 
     @property
     def still(self) -> System:
@@ -276,7 +280,7 @@ class StaticEquations:
         if not depends_on((*places, *biases, *(row.velocity for row in free.constraints.rows)), t):
             return system
         names = {name: substituted((x,), {t[0]: 0})[0] if type(x) is Node else x for name, x in scope.names.items()}
-        return _made_of(free, replace(scope, names=names))
+        return Quantities.put_into_rates(_made_of(free, replace(scope, names=names)))
 
 
 def with_norms(statics: StaticEquations) -> StaticEquations:

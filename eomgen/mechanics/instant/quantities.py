@@ -11,7 +11,7 @@ import numpy as np
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import Balance, DrivingForces, Indeterminate, Reactions
+from eomgen.mechanics.free_bodies import Balance, DrivingForces, Indeterminate, Reactions, SystemFriction
 from eomgen.mechanics.impacts import ImpactEquations
 from eomgen.mechanics.instant.kinematic_state import Composition, body_axes, composition_of
 from eomgen.mechanics.instant.motion_kind import finite_center
@@ -400,9 +400,62 @@ class Quantities:
         return substituted((scalar,), dict(zip(system.symbols.u, rates, strict=True)))[0]
 
     @staticmethod
+    def put_into_rates(system: System) -> System:
+        """The same system, reactions in the rates of its states as functions of q, u, a, z and t; made once.
+
+        Raises:
+            DerivationError: a reaction in a rate has no single value: the state is named.
+        """
+        return _with_reactions_in_rates(system)
+
+    @staticmethod
     def requested_by(formula: Expression, source: str) -> bool:
         """True if a formula calls functions that are found from this source."""
         return any(call.name in FUNCTIONS and FUNCTIONS[call.name].source == source for call in formula.calls)
+
+
+# -------- reactions in rates ----------------------------------------------------------------------------------
+# System -> System: reactions in the rates of its states of first order, by the balance of the bodies cut free.
+#
+#     z' = Z(q, u, a, z, rho, t),   rho = rho(q, u, a, z, t)
+#
+# The reactions are linear in the accelerations, as `[outputs]` have them: so z' is a function of q, u, a and z, like a
+# rate in which accelerations stand, and all that follows from those follows from these. The order is a and lam first,
+# as z is known, then z'. Nothing that pushes may depend on such a rate: it would be an algebraic loop.
+
+
+BY_ITSELF = "let the rate hold what the reaction follows from, or take out what makes it indeterminate"
+
+
+def _with_reactions_in_rates(system: System) -> System:
+    scope = system.scope
+    held = scope.reactions_in_rates if system.symbols.z else {}
+    if not held or not depends_on(scope.state_rates, held):
+        return system
+    key = _with_reactions_in_rates
+    if key not in system.found:
+        values = {symbol: _in_a_rate(system, symbol, call) for symbol, call in held.items()}
+        rates = substituted(scope.state_rates, values)
+        names = scope.names | {f"{z.name}'": rate for z, rate in zip(scope.symbols.z, rates, strict=True)}
+        system.found[key] = replace(system, motion=replace(system.motion, scope=replace(scope, names=names)))
+    found: System = system.found[key]
+    return found
+
+
+def _in_a_rate(system: System, symbol: Node, call: Call) -> Scalar:
+    """A reaction in a rate, in q, u, a, z, t and the parameters."""
+    scope = system.scope
+    rates = zip(scope.symbols.z, scope.state_rates, strict=True)
+    where = f"states.{next(z.name for z, rate in rates if depends_on(rate, (symbol,)))}.rate"
+    try:
+        value = Quantities(system, balance=Reactions.of(system)).value(call)
+    except DerivationError as error:
+        what = f"'{call}' in the rate of a state: {error.what}"
+        raise DerivationError(what, where, error.fix or BY_ITSELF) from error
+    if depends_on(value, (*system.symbols.lam, *system.symbols.unknowns.values())):
+        what = f"'{call}' in the rate of a state holds a multiplier of a constraint, or an unknown load"
+        raise DerivationError(what, where, "ask the reaction of a joint or constraint: reaction_x(A), reaction_n(A)")
+    return SystemFriction(system).with_rest((value,))[0]
 
 
 # -------- energies --------------------------------------------------------------------------------------------

@@ -26,6 +26,7 @@ from eomgen.model import (
 )
 from eomgen.symbolic.exact import cancelled, readable_all
 from eomgen.symbolic.expression import (
+    Call,
     Expression,
     Fraction,
     Graph,
@@ -144,6 +145,16 @@ class Scope:
     def state_rates(self) -> ScalarRow:
         """z' of the states of first order, nz, in q, u, a, z, inputs and t."""
         return tuple(self.names[f"{z.name}'"] for z in self.symbols.z)
+
+    @property
+    def reactions_in_rates(self) -> dict[Node, Call]:
+        """The reactions in the rates of states, by the symbols that stand for them until the bodies are cut free."""
+        laws = (part.rate for part in self.model.states.values() if part.rate is not None)
+        calls = (call for law in laws for call in law.all_calls if f"{call.name}(" not in self.names)
+        return {self._symbol_of(call): call for call in calls}
+
+    def _symbol_of(self, call: Call) -> Node:
+        return self.graph.symbol(str(call))  # no name of a model has parentheses
 
     @property
     def flow(self) -> dict[Node, Scalar]:
@@ -354,9 +365,9 @@ class Scope:
         if not depends_on(held, (self.symbols.t, *self.symbols.z)):
             return None
         rates = self.time_derivative(held)
-        if depends_on(rates, self.symbols.a):
+        if depends_on(rates, (*self.symbols.a, *self.reactions_in_rates)):
             raise DerivationError(
-                f"the rate of the mass of body '{body}' depends on an acceleration",
+                f"the rate of the mass of body '{body}' depends on an acceleration or a reaction",
                 f"bodies.{body}",
                 "let the rate of the state that is its mass depend on speeds and places alone",
             )
@@ -407,7 +418,7 @@ class Scope:
         for name in in_order(laws)[0]:
             law = laws[name]
             if law is not None and waiting.isdisjoint(law.names):
-                names[name] = law.evaluate(names)
+                names[name] = law.evaluate(names, self._symbol_of)
             elif law is not None:
                 waiting.add(name)
         return replace(self, names=names) if laws else self

@@ -365,6 +365,12 @@ class Expression:
         """The functions of outputs that stand in it, in the order written (those in their arguments not)."""
         return tuple(what for kind, what in self.code if kind == "call")
 
+    @property
+    def all_calls(self) -> tuple[Call, ...]:
+        """The functions of outputs and of tables that stand in it, each before those in its arguments."""
+        inner = (a for call in self.calls for a in call.args if isinstance(a, Expression))
+        return (*self.calls, *(call for a in inner for call in a.all_calls))
+
     def evaluate(self, lookup: Mapping[str, Value], call: Callable[[Call], Value] | None = None) -> Value:
         """The value, in the arithmetic of the values given.
 
