@@ -154,8 +154,7 @@ class Speed(Part):
 class StateVariable(Part):
     """A state of first order: a current, a pressure, a temperature, an integral, z' = `rate`.
 
-    Its rate may hold the whole state, accelerations, reactions and inputs, and forces may depend on it; it moves no body
-    itself.
+    Its rate may hold the whole state, accelerations, reactions and inputs; forces may depend on it. It moves no body.
 
     Args:
         rate: z' [its unit in SI per second].
