@@ -90,6 +90,8 @@ def _structure_checks(
     if found.sums and not found.structure.unknowns:
         name = "stated sums have one value, whatever the self-stress"
         yield checked(name, first_wrong(proof.wrong_sums()), IN_NUMBERS)
+    if (differs := proof.wrong_contacts()) is not None:
+        yield checked("an equilibrium that all contacts allow exists, or is denied, as reported", differs, IN_NUMBERS)
     if system.loads.applied:
         name = "applied loads act as their fields declare"
         yield attempted(name, "50 digits", lambda: acting_otherwise(system, proof.state))
@@ -207,6 +209,62 @@ class _Proof:
             names = " + ".join(self.found.structure.names[j] for j in each.combination)
             if off or np.any(np.abs(factors @ added) > tolerances.COMPUTED * np.abs(factors).sum()):
                 yield f"the sum of {names}"
+
+    def wrong_contacts(self) -> str | None:
+        """Contradiction of a report with the equilibria of the bodies; None where no contact is indeterminate.
+
+        The equilibria are the reactions of least norm and what may be added; the largest margin that all contacts have
+        in one of them is sought anew.
+        """
+        from scipy.optimize import linprog
+
+        scope = self.found.system.scope
+        if scope.numbers(tuple(scope.symbols.parameters.values())) is None:
+            return None
+        least, added = self._balancing
+        rows = np.array([*self._contact_margins()]).reshape(-1, len(least) + 1)
+        margins, slopes = rows[:, :-1] @ least + rows[:, -1], rows[:, :-1] @ added
+        if np.all(np.abs(slopes) <= tolerances.COMPUTED):
+            return None
+        size = 1.0 + np.abs(least).max(initial=0.0)
+        above = np.column_stack([-slopes, np.ones(len(rows))])
+        bounds = [(None, None)] * added.shape[1] + [(None, size)]
+        best = linprog(np.eye(added.shape[1] + 1)[-1] * -1, above, margins, bounds=bounds, method="highs")
+        exists = best.status == 0 and -best.fun >= -tolerances.COMPUTED * size
+        if exists and self.found.excluded:
+            return "one exists, and none is said to"
+        return "" if exists or self.found.excluded else "none exists, and this is not said"
+
+    def _contact_margins(self) -> Iterator[np.ndarray]:
+        """Rows of what may not be negative, linear in the components, last a constant: N, tension, mu N - |t|, T - |f|."""
+        named = {each.name: each for each in NamedReaction.all_of(self.found.balance.balance)}
+        width = len(self._balancing[0]) + 1
+
+        def row(*names: str) -> np.ndarray | None:
+            for name in names:
+                if name in named:
+                    found = np.zeros(width)
+                    found[list(named[name].combination)] = self.numbers(tuple(named[name].combination.values()))
+                    found[-1] = self.one(named[name].given)
+                    return found
+            return None
+
+        for contact in self.found.system.scope.model.contacts:
+            name, most = contact.name, np.zeros(width)
+            along = row(f"friction({name})", f"reaction_t({name})")
+            normal = row(f"reaction_n({name})", f"tension({name})", f"reaction_couple({name})")
+            if contact.size is not None and contact.grip is not None:
+                most[-1] = max(0.0, self.one(self.found.system.scope.value(contact.grip)))
+            elif contact.unilateral and normal is not None:
+                yield normal
+                if contact.mu is None or contact.surface:
+                    continue
+                most = self.one(self.found.system.scope.value(contact.mu)) * normal
+            else:
+                continue
+            if along is not None:
+                yield most - along
+                yield most + along
 
     def one(self, x: Scalar) -> float:
         return float(self.numbers((x,))[0])

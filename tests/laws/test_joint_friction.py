@@ -614,6 +614,9 @@ def test_a_stop_along_a_slide_presses_no_friction():
     assert [impact.t for impact in result.impacts[:3]] == pytest.approx(due, rel=1e-9)
 
 
+LOOKED_AT = "an equilibrium that all contacts allow exists, or is denied, as reported"
+
+
 @pytest.mark.parametrize(("torque", "rests"), [(-3, False), (-2.1, False), (-1.9, True), (0, True), (50, True)])
 def test_a_stop_and_friction_share_what_they_hold_and_neither_pulls_nor_holds_more(torque, rests):
     """Hinge at its stop: from it only friction holds, up to 2; towards it the stop takes whatever comes."""
@@ -632,6 +635,7 @@ def test_a_stop_and_friction_share_what_they_hold_and_neither_pulls_nor_holds_mo
     found = eomgen.statics(eomgen.loads(textwrap.dedent(text)))
     assert found.found.structure.indeterminacy == 1 and bool(found.broken) != rests
     assert rests or "'bar_high' pushes, the joint 'bar' holds" in found.failed
+    assert LOOKED_AT in {check.name for check in found.certify().checks} and found.certify().ok
 
 
 @pytest.mark.parametrize(("push", "height"), [(3.8, 0.2), (4.0, 0.2), (3.8, 1.3), (-3.8, 0.2), (-4.0, 0.2)])
@@ -657,6 +661,7 @@ def test_a_box_on_two_rough_feet_slides_where_both_together_hold_no_more(push, h
     found = eomgen.statics(eomgen.loads(textwrap.dedent(text)))
     rests = abs(push) <= 0.4 * 9.81 and abs(push) * height <= 9.81 * 0.5
     assert found.found.structure.indeterminacy == 1 and bool(found.broken) != rests
+    assert LOOKED_AT in {check.name for check in found.certify().checks} and found.certify().ok
 
 
 @pytest.mark.parametrize("angle", [0.6, 0.7, 0.75, 1.2])
