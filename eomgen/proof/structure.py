@@ -236,7 +236,7 @@ class _Proof:
         return "" if exists or self.found.excluded else "none exists, and this is not said"
 
     def _contact_margins(self) -> Iterator[np.ndarray]:
-        """Rows of what may not be negative, linear in the components, last a constant: N, tension, mu N - |t|, T - |f|."""
+        """Rows of what may not be negative, linear in the components, last a constant: N, mu N - |t|, T - |f|."""
         named = {each.name: each for each in NamedReaction.all_of(self.found.balance.balance)}
         width = len(self._balancing[0]) + 1
 
