@@ -490,3 +490,86 @@ constraints.A = { kind = "pin", points = ["bar.end", "P"] }
 """
     with pytest.raises(DerivationError, match=r"reaction_x.A. is statically indeterminate"):
         eomgen.derive(eomgen.loads(text))
+
+
+def test_a_motor_that_turns_steadily_is_linearized_about_its_speed_and_current():
+    """theta' = k U/(R b + k^2), i = b U/(R b + k^2); eigenvalues of [[-R/L, -k/L], [k/J, -b/J]], and 0 of theta."""
+    found = eomgen.linearize(eomgen.loads(MOTOR), about="steady")
+    J, R, L, k, b, U = 0.02, 1.2, 3e-3, 0.08, 1e-3, 24
+    at = {name: x.value for name, x in found.entries()["state"].items()}
+    assert at["theta'"] == pytest.approx(k * U / (R * b + k**2)) and at["i"] == pytest.approx(b * U / (R * b + k**2))
+    right = [*np.linalg.eigvals([[-R / L, -k / L], [k / J, -b / J]]), 0.0]
+    assert sorted(np.real(found.spectrum.eigenvalues)) == pytest.approx(sorted(np.real(right)), abs=1e-9)
+    assert found.certify().ok
+
+
+STEADY = """
+eomgen = 1
+space = "plane"
+parameters = { m = 1000, c = 0.8, P0 = 20000, T = 0.5, mu = 0.01, g = 9.81, C = 500, h = 3 }
+coordinates.x = { speed = 10 }
+states.P = { rate = "(P0 - P)/T", unit = "W", about = "power of the engine" }
+states.H = { rate = "mu*abs(reaction_n(wagon)*x')", unit = "J", about = "heat, on which nothing depends" }
+states.D = { rate = "(mu*reaction_n(wagon)*abs(x') - h*D)/C", about = "temperature of the bearings" }
+bodies.wagon.mass = "m"
+bodies.wagon.joint = { kind = "prismatic", axis = [1, 0], displacement = "x", force = "P/x' - c*x'^2" }
+forces.w = { kind = "gravity", acceleration = [0, "-g"] }
+"""
+
+
+def test_a_wagon_under_the_power_of_its_engine_goes_steadily():
+    """v = (P0/c)^(1/3), D = mu m g v/h; -1/T, -3 c v/m, -h/C; the place, and the heat that grows: 0."""
+    found = eomgen.linearize(eomgen.loads(STEADY), about="steady")
+    v = (20000 / 0.8) ** (1 / 3)
+    at = {name: x.value for name, x in found.entries()["state"].items()}
+    assert at["x'"] == pytest.approx(v) and at["D"] == pytest.approx(0.01 * 1000 * 9.81 * v / 3)
+    right = sorted([-2, -3 * 0.8 * v / 1000, -3 / 500, 0, 0])
+    assert sorted(np.real(found.spectrum.eigenvalues)) == pytest.approx(right, abs=1e-9) and found.certify().ok
+
+
+def test_a_speed_controller_with_integral_part_holds_its_speed():
+    """theta' = w, i = b w/k, z = (R i + k w)/K: the integral finds what no error may leave."""
+    rate = "(2*(w - theta') + 8*z + 0*U - R*i - k*theta')/L"
+    text = MOTOR.replace("(U - R*i - k*theta')/L", rate).replace("[inputs]", "w = 50\n[inputs]")
+    text = text.replace("[states]", '[states]\nz = { rate = "w - theta\'" }')
+    found = eomgen.linearize(eomgen.loads(text), about="steady")
+    at = {name: x.value for name, x in found.entries()["state"].items()}
+    i = 1e-3 * 50 / 0.08
+    assert [at["theta'"], at["i"], at["z"]] == pytest.approx([50, i, (1.2 * i + 0.08 * 50) / 8])
+    A = np.array([[-0.05, 0.08 / 0.02, 0], [-2.08 / 3e-3, -400, 8 / 3e-3], [-1, 0, 0]])
+    right = sorted([*np.linalg.eigvals(A), 0], key=lambda x: (x.real, x.imag))
+    got = sorted(found.spectrum.eigenvalues, key=lambda x: (round(x.real, 6), x.imag))
+    assert got == pytest.approx(right, abs=1e-6)
+
+
+HOOP = """
+eomgen = 1
+space = "space"
+parameters = { m = 1, R = 0.5, g = 9.81, W = 6, T = 0.2, c = 0.3, k = 0.6 }
+coordinates.phi = { rate = "W" }
+coordinates.theta = { near = 0.8 }
+states.F = { rate = "(k*theta - F)/T", about = "torque of a slow spring" }
+bodies.hoop.joint = { kind = "revolute", axis = [0, 0, 1], angle = "phi" }
+[bodies.bead]
+mass = "m"
+center = [0, 0, "-R"]
+inertia = [0, 0, 0]
+joint = { kind = "revolute", on = "hoop.origin", axis = [0, 1, 0], angle = "theta", torque = "-F - c*theta'" }
+[forces.w]
+kind = "gravity"
+acceleration = [0, 0, "-g"]
+"""
+
+
+def test_a_bead_on_a_turning_hoop_rests_on_it_with_its_state():
+    """m R^2 W^2 sin cos - m g R sin - F = 0 with F = k theta: rest that only the turning frame has, two ways to it."""
+    A = np.array([[0, 1, 0], [0, -0.3 / 0.25, -1 / 0.25], [3, 0, -5]])
+    for about, theta in (("equilibrium", 0.0), ("steady", 0.9000168332264661)):
+        found = eomgen.linearize(eomgen.loads(HOOP), about=about)
+        at = {name: x.value for name, x in found.entries()["state"].items()}
+        left = 0.25 * 36 * np.sin(theta) * np.cos(theta) - 9.81 * 0.5 * np.sin(theta) - 0.6 * theta
+        assert abs(left) < 1e-9 and at["theta"] == pytest.approx(theta) and at["F"] == pytest.approx(0.6 * theta)
+        A[1, 0] = 36 * np.cos(2 * theta) - 9.81 / 0.5 * np.cos(theta)
+        right = sorted(np.linalg.eigvals(A), key=lambda x: (round(x.real, 6), x.imag))
+        got = sorted(found.spectrum.eigenvalues, key=lambda x: (round(x.real, 6), x.imag))
+        assert got == pytest.approx(right, rel=1e-6) and found.certify().ok

@@ -359,7 +359,7 @@ def _near(
     what = f"the start is no steady motion: '{wrong}' is accelerated there"
     symbols, number = system.symbols, {x: float(value) for x, value in start.numbers.items()}
     at_rest = not start.moving and all(number[u] == 0 for u in symbols.u)
-    kind = "equilibrium" if at_rest else "steady motion"
+    kind, a = ("equilibrium", "an") if at_rest else ("steady motion", "a")
     try:
         found = (
             place_of_rest(system, {q.name: number[q] for q in symbols.q}) if at_rest else _steady(first, start, wanted)
@@ -368,9 +368,10 @@ def _near(
         if _accelerated(first, found):
             raise DerivationError(what, fix="start from an equilibrium, or a steady motion")
     except (DerivationError, NotYet, NoValue, ZeroDivisionError) as error:
-        fix = f'start from a {kind}, or let it be sought: about = "{EQUILIBRIUM if at_rest else STEADY}"'
-        if symbols.z and not at_rest:
-            fix = f"start from a {kind}: where the system settles into it, the end of a run has its values"
+        fix = f'start from {a} {kind}, or let it be sought: about = "{EQUILIBRIUM if at_rest else STEADY}"'
+        if symbols.z:
+            fix = f"start from {a} {kind}: where the system settles into it, the end of a run has its values"
+            fix += f', or let a steady motion be sought: about = "{STEADY}"' if at_rest else ""
         raise DerivationError(f"{what}, and no {kind} was found near it", "linearize.about", fix) from error
     shown = (*found.system.symbols.q, *(() if at_rest else found.system.symbols.u))
     away = {x: float(found.numbers[x]) - number[x] for x in shown}
@@ -396,7 +397,6 @@ def _refuse_carried(first: FirstOrder, reference: ReferenceMotion) -> None:
 
 def _steady(first: FirstOrder, start: ReferenceMotion, wanted: Sequence[str]) -> ReferenceMotion:
     """The steady motion nearest to the start, in closed form where its family has one."""
-    first.system.refuse_states("steady motions are not sought", 'start in one, and ask about = "start"')
     found = steady_start(first, start, wanted)
     there = replace(at_the_start(first.system, at_rest=False, given=found.values), about=STEADY)
     family = family_of(first, there, wanted, found.following)
@@ -406,7 +406,7 @@ def _steady(first: FirstOrder, start: ReferenceMotion, wanted: Sequence[str]) ->
 def _with_family(first: FirstOrder, reference: ReferenceMotion) -> ReferenceMotion:
     """Relative rest, with the family of all places of the same kind."""
     choice = choice_of(first, reference, ())
-    kept = [first.system.symbols.q[k] for k in choice.places.free]
+    kept = [*(first.system.symbols.q[k] for k in choice.places.free), *first.system.symbols.z]
     return replace(reference, family=family_of(first, reference, (), kept))
 
 
@@ -444,14 +444,18 @@ def _accelerated(first: FirstOrder, reference: ReferenceMotion) -> str:
 
 
 def _changing_state(first: FirstOrder, reference: ReferenceMotion, reducing: Reducing) -> str:
-    """The first state of first order whose rate does not vanish there; "" where all do."""
+    """The first state of first order whose rate does not vanish there; "" where all do.
+
+    A state on which nothing depends, as a worn volume, may grow.
+    """
     symbols, scope = first.system.symbols, first.system.scope
+    seen = [z for z in symbols.z if depends_on((*first.residual, *scope.state_rates), (z,))]
     known = {**reference.numbers, **dict(zip(symbols.a, map(fifty_digits().number, reducing.at.a), strict=True))}
     slopes = iter(evaluate([x for row in jacobian(scope.state_rates, symbols.x) for x in row], known, fifty_digits()))
     sizes = [max(1, abs(known[x])) for x in symbols.x]
     for z, rate in zip(symbols.z, evaluate(scope.state_rates, known, fifty_digits()), strict=True):
         usual = sum(abs(next(slopes)) * size for size in sizes)
-        if abs(rate) > tolerances.COMPUTED * usual:
+        if z in seen and abs(rate) > tolerances.COMPUTED * usual:
             return str(z.name)
     return ""
 

@@ -121,7 +121,7 @@ def place_of_rest(system: System, guess: Mapping[str, float] | None = None) -> R
 def relative_rest(equations: EquationsOfMotion, guess: Mapping[str, float] | None = None) -> ReferenceMotion:
     """Relative equilibrium, at rest relative to what the model drives at a steady rate: a bead on a turning hoop.
 
-    forcing + J^T lam = 0 at u = 0, forcing with the inertia forces of the drives' motion.
+    forcing + J^T lam = 0 and z' = 0 at u = 0, forcing with the inertia forces of the drives' motion.
 
     Raises:
         DerivationError: none was found.
@@ -132,7 +132,6 @@ def relative_rest(equations: EquationsOfMotion, guess: Mapping[str, float] | Non
     driven = [q for q in symbols.q if coordinates[q.name].driven]
     given = system.standing({q: start[q] for q in driven})
     forcing = substituted(equations.forcing, given)
-    system.refuse_states("relative rest is not sought", 'ask about = "start"')
     own = {q: k for k, u in enumerate(symbols.u) for q in symbols.q if u.name == f"{q.name}'"}
     if len(own) != len(symbols.u) or len(own) + len(driven) != len(symbols.q):
         raise DerivationError(
@@ -140,14 +139,15 @@ def relative_rest(equations: EquationsOfMotion, guess: Mapping[str, float] | Non
             "coordinates",
             fix='ask about = "start"',
         )
+    Q = (*(forcing[k] for k in own.values()), *substituted(equations.state_rates, given))
     statics = StaticEquations(
         system,
         (),
-        tuple(own),
+        (*own, *symbols.z),
         given,
-        tuple(forcing[k] for k in own.values()),
-        tuple(forcing[k] for k in own.values()),
-        tuple(substituted(row, given) for row in equations.J),
+        Q,
+        Q,
+        tuple((*substituted(row, given), *(0 for _ in symbols.z)) for row in equations.J),
         symbols.lam,
         substituted(tuple(x for x in position_equations(system, start) if depends_on(x, own)), given),
     )

@@ -27,7 +27,9 @@ from eomgen.symbolic.print import text_size
 #
 # A motion is steady where the independent speeds stay and the coordinates on which anything depends stand still:
 #
-#     Z^T (M a - forcing) = 0  at  a_i = 0,      q_k' = 0 of the coordinates that are seen in K or F
+#     Z^T (M a - forcing) = 0  at  a_i = 0,      q_k' = 0, z_k' = 0 of what is seen in K or F
+#
+# States of first order are sought with them: those on which nothing depends, as a worn volume, may grow.
 #
 # Steady motions come in families (a top precesses at many angles). What the model states at the start is held where
 # that leaves enough to move: `start` of a coordinate without `near`, `speed` of a coordinate without `near`.
@@ -80,18 +82,25 @@ def steady_start(first: FirstOrder, reference: ReferenceMotion, wanted: Sequence
 def _steady(first: FirstOrder, choice: Choice, state: Mapping[Node, Any], changed: np.ndarray) -> Steady:
     symbols = first.system.symbols
     values = {x.name: float(state[x]) for x in symbols.x}
-    independent = (*(symbols.q[k] for k in choice.places.free), *(symbols.u[k] for k in choice.speeds.free))
+    independent = (*_places(first, choice), *(symbols.u[k] for k in choice.speeds.free))
     return Steady(
         {name: 0.0 if abs(x) < tolerances.COORDINATE_AT_50 else x for name, x in values.items()},
         tuple(x for x, one in zip(independent, changed, strict=True) if one),
     )
 
 
+def _places(first: FirstOrder, choice: Choice) -> tuple[Node, ...]:
+    """The independent coordinates, and the states of first order."""
+    symbols = first.system.symbols
+    return (*(symbols.q[k] for k in choice.places.free), *symbols.z)
+
+
 def _free(first: FirstOrder, choice: Choice) -> np.ndarray:
-    """Rank of each independent coordinate and speed: how freely it may change, unstated ones before guesses."""
+    """Rank of each independent coordinate, state and speed: how freely it may change, unstated ones before guesses."""
     symbols, model = first.system.symbols, first.system.scope.model
     places = [model.coordinates[symbols.q[k].name] for k in choice.places.free]
     found = [STATED if part.driven else _freedom(part.start, part.near) for part in places]
+    found += [OPEN] * len(symbols.z)  # from where a state starts says nothing of the motion into which it settles
     for name in (symbols.u[k].name for k in choice.speeds.free):
         part = model.coordinates.get(name.removesuffix("'"))
         found.append(_freedom(model.speeds[name].start, None) if part is None else _freedom(part.speed, part.near))
@@ -163,10 +172,13 @@ class Here:
 
     @cached_property
     def still(self) -> list[int]:
-        """The independent coordinates that must not move: those seen in K, and those on which their rates depend."""
+        """The independent coordinates and states that must not move: those seen in K, states seen in rates of states,
+        and those on which their rates depend."""
         K, F = self._seen
         found: set[int] = set()
         seen = {int(j) for j in np.flatnonzero(np.any(K, axis=0))}
+        n = len(self.choice.places.free)
+        seen |= {n + int(j) for j in np.flatnonzero(np.any(F[n:, n:], axis=0))}
         while seen - found:
             found |= seen
             seen = {int(j) for j in np.flatnonzero(np.any(F[sorted(found)], axis=0))}
@@ -183,9 +195,11 @@ class Here:
 
     @cached_property
     def rates(self) -> np.ndarray:
-        """q_i' of the independent coordinates."""
-        found = evaluate(self.first.system.scope.rates, self.state, fifty_digits())
-        return np.array([float(found[k]) for k in self.choice.places.free])
+        """q_i' of the independent coordinates, and z'."""
+        scope = self.first.system.scope
+        a = dict(zip(scope.symbols.a, map(fifty_digits().number, self.reducing.at.a), strict=True))
+        found = evaluate((*scope.rates, *scope.state_rates), {**self.state, **a}, fifty_digits())
+        return np.array([float(found[k]) for k in (*self.choice.places.free, *range(len(scope.rates), len(found)))])
 
     @property
     def residuals(self) -> np.ndarray:
@@ -193,7 +207,7 @@ class Here:
 
     @property
     def slopes(self) -> np.ndarray:
-        """Their derivatives by (q_i, u_i) along the constraints."""
+        """Their derivatives by (q_i, z, u_i) along the constraints."""
         e = self.equations
         upper = np.hstack([floats(e.K), floats(e.C)])
         return np.vstack([upper, np.hstack([floats(e.F), floats(e.E)])[self.still]])
@@ -208,9 +222,14 @@ class Here:
 
     @property
     def sizes(self) -> np.ndarray:
-        """Unit of change of each variable: of a coordinate max(1, |q|), of a speed the fastest speed, at least 1."""
+        """Unit of change of each variable: of a coordinate max(1, |q|), of a speed the fastest speed, at least 1; of a
+        state its own size, or that with which all their rates would vanish beside everything else as it is."""
         symbols = self.first.system.symbols
-        places = [max(1.0, abs(float(self.state[symbols.q[k]]))) for k in self.choice.places.free]
+        places = [max(1.0, abs(float(self.state[x]))) for x in _places(self.first, self.choice)]
+        if m := len(symbols.z):
+            n = len(places) - m
+            settled = np.linalg.lstsq(floats(self.equations.F)[n:, n:], -self.rates[n:], rcond=tolerances.RANK)[0]
+            places[n:] = np.maximum(places[n:], abs(settled)).tolist()
         speeds = [abs(float(self.state[symbols.u[k]])) for k in self.choice.speeds.free]
         return np.array(places + [max(1.0, *speeds, 0.0)] * len(self.choice.speeds.free))
 
@@ -228,9 +247,9 @@ class Here:
             NoValue: the constraints cannot be satisfied there.
         """
         symbols, number = self.first.system.symbols, fifty_digits().number(1)
-        n = len(self.choice.places.free)
+        n = len(self.equations.coordinates)
         dq = floats(self.equations.P) @ step[:n]
-        state = {**self.state, **{q: self.state[q] + number * d for q, d in zip(symbols.q, dq, strict=True)}}
+        state = {**self.state, **{q: self.state[q] + number * d for q, d in zip(self.equations.all, dq, strict=True)}}
         state |= {
             symbols.u[k]: state[symbols.u[k]] + number * d
             for k, d in zip(self.choice.speeds.free, step[n:], strict=True)
@@ -321,14 +340,14 @@ class _Writing:
 
     @property
     def _independent(self) -> tuple[Node, ...]:
-        symbols = self.first.system.symbols
-        return (*(symbols.q[k] for k in self.choice.places.free), *(symbols.u[k] for k in self.choice.speeds.free))
+        u = self.first.system.symbols.u
+        return (*_places(self.first, self.choice), *(u[k] for k in self.choice.speeds.free))
 
     @cached_property
     def _seen(self) -> tuple[Node, ...]:
         """The independent coordinates that stand still."""
-        q, here = self.first.system.symbols.q, Here.at(self.first, self.choice, self.reference.numbers)
-        return tuple(q[self.choice.places.free[j]] for j in here.still)
+        places, here = _places(self.first, self.choice), Here.at(self.first, self.choice, self.reference.numbers)
+        return tuple(places[j] for j in here.still)
 
     @property
     def _following(self) -> tuple[Node, ...]:
@@ -345,7 +364,7 @@ class _Writing:
         symbols, exact, numbers = self.first.system.symbols, self.reference.exact, self.reference.numbers
         still = {u: 0 for u in self._independent if u in symbols.u and numbers[u] == 0}
         sought = {*self._seen, *self._following, *symbols.u}
-        others = [x for x in (*symbols.q, symbols.t, *symbols.inputs.values()) if x not in sought]
+        others = [x for x in (*symbols.places, symbols.t, *symbols.inputs.values()) if x not in sought]
         if any(x not in exact for x in others):
             return None
         fixed = {x: exact[x] for x in others} | still
@@ -382,9 +401,12 @@ class _Writing:
         """Expressions that vanish in a steady motion: unbalanced forces, rates and relations."""
         first, choice = self.first, self.choice
         field = self._at(self._fixed or {})
-        rates = [first.system.scope.rates[first.system.symbols.q.index(q)] for q in self._seen]
+        at, scope = Reducing(first, choice, field).at, first.system.scope
+        by_place = dict(zip(scope.symbols.places, (*scope.rates, *scope.state_rates), strict=True))
+        rates = [by_place[x] for x in self._seen]
         relations = [first.relations[i] for i in choice.places.rows if i < len(first.relations)]
-        left = (*Reducing(first, choice, field).at.unbalanced, *field.of((*rates, *relations)))
+        moving = field.with_values(dict(zip(scope.symbols.a, at.a, strict=True)))
+        left = (*at.unbalanced, *moving.of((*rates, *relations)))
         return tuple(x for x in left if not is_zero(x))
 
     @property
@@ -421,7 +443,8 @@ class _Writing:
     def _with_others(self, family: Family) -> Family:
         """The family with every other motion found that has the same values held."""
         unknowns, conditions = self._unknowns, self._conditions
-        if not unknowns or len(unknowns) != len(conditions) or len(unknowns) > MOST_SOUGHT:
+        states = not {*unknowns}.isdisjoint(self.first.system.symbols.z)  # no range is known in which they all lie
+        if states or not unknowns or len(unknowns) != len(conditions) or len(unknowns) > MOST_SOUGHT:
             return family
         numbers = self.reference.numbers
         sought = StaticEquations(
