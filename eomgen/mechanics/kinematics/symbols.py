@@ -568,12 +568,14 @@ def primitive(f: Scalar, x: Node, zero: Container[str] | None = None) -> Scalar 
         return f * x
     if len(order((f,))) > (LONGEST_ROOTED if _has_rooted_sines(f, x) else LONGEST_INTEGRAND):
         return None
-    from sympy import Eq, Integral, Ne, false, true
+    from sympy import Eq, Integral, Ne, Piecewise, false, true
     from sympy.integrals.manualintegrate import manualintegrate
 
     from eomgen.symbolic.print import scalar_from_sympy, to_sympy
 
     expression, variable = to_sympy((f, x))
+    if any(case.has(variable) for each in expression.atoms(Piecewise) for _, case in each.args):
+        return None  # there is no rule for what changes its form along x: of a function through samples that takes 10 s
     found = None if zero is None else _over_a_line(expression, variable, zero)
     found = manualintegrate(expression, variable) if found is None else found
     if found.has(Integral):
