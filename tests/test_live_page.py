@@ -35,6 +35,11 @@ TEXT = (MODELS / "double_pendulum.toml").read_text("utf-8")
 NEVER = 40.0  # s
 
 
+def at_a_terminal() -> None:
+    """Lets a program hear Ctrl-C: tests that a script runs in its background are begun, and begin others, deaf to it."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 class Live:
     """The command at work."""
 
@@ -42,7 +47,12 @@ class Live:
         command = [sys.executable, "-m", "eomgen", "live", str(path), *options]
         self.begun = time.monotonic()
         self.process = subprocess.Popen(
-            command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env={**os.environ, **environment}
+            command,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            env={**os.environ, **environment},
+            preexec_fn=at_a_terminal,
         )
         assert self.process.stdout is not None
         self.address = self.process.stdout.readline().rstrip("\n")

@@ -64,12 +64,12 @@ def serve(
             else:
                 team.ask(state.begin(), content, str(path), path.stem, seconds)
 
-        watcher.follow(followed)
-        say(server.address)
-        if opens and _has_screen():
-            threading.Thread(target=webbrowser.open, args=(server.address,), daemon=True).start()
         try:
             with suppress(KeyboardInterrupt):
+                watcher.follow(followed)
+                say(server.address)
+                if opens and _has_screen():
+                    threading.Thread(target=webbrowser.open, args=(server.address,), daemon=True).start()
                 server.serve_forever()
         finally:
             watcher.stop()
