@@ -36,7 +36,7 @@ NEVER = 40.0  # s
 
 
 def at_a_terminal() -> None:
-    """Lets a program hear Ctrl-C: tests that a script runs in its background are begun, and begin others, deaf to it."""
+    """Lets a program hear Ctrl-C: tests that a script runs in its background are deaf to it, and what they begin."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
