@@ -552,8 +552,6 @@ def parameters_of_zero(model: Model) -> frozenset[str]:
 
 
 LONGEST_INTEGRAND = 300  # operations: rules are sought for every part of it, and for products of parts
-
-
 LONGEST_ROOTED = 16  # operations, where sines stand under a root: most have no closed form, which takes seconds to see
 
 
