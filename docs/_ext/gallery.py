@@ -26,7 +26,8 @@ from eomgen.page.report import Subject
 ROOT = Path(__file__).parents[2]
 MODELS = ROOT / "models"
 PLACE = ROOT / "docs" / "gallery"
-QUICK = ("double_pendulum", "gerber_beam", "quick_return", "seeds/ch13_p2")  # what moves, stands, is a mechanism; a seed
+# what moves, what stands, a mechanism, a seed
+QUICK = ("double_pendulum", "gerber_beam", "quick_return", "seeds/ch13_p2")
 PATIENCE = 60.0  # seconds of one model
 LONGEST = 4000  # letters of a section
 SECONDS = 6.0  # of a motion
