@@ -92,14 +92,8 @@ from eomgen.model.forces.load import UniformField as UniformField
 # The exponents of m, kg, s and of unknowns; none is 0
 from eomgen.model.inference import Dimension as Dimension
 
-# The rows of e' = G w: half the quaternion's products with the units i, j, k
-from eomgen.model.joints.ball import rate_matrix_of as rate_matrix_of
-
-# R at the angles of a sequence, or at a quaternion of norm 1
-from eomgen.model.joints.ball import rotation_of as rotation_of
-
-# w = 2 Im(e* o e'), child's axes
-from eomgen.model.joints.ball import spin_of_quaternion as spin_of_quaternion
+# e0, e1, e2, e3, scalar first, child to parent, of norm 1
+from eomgen.model.joints.ball import UnitQuaternion as UnitQuaternion
 from eomgen.model.joints.base import Z as Z
 
 # The rotation that turns one after the other make, each about the axes that the one before left
@@ -133,14 +127,8 @@ from eomgen.model.outputs.base import formula_at as formula_at
 # The second argument: L-c reads like a member
 from eomgen.model.outputs.forces import distance_of as distance_of
 
-# d.I d / d.d, the moment about the axis through the tensor's point in the direction d, of any length
-from eomgen.model.outputs.masses import about_axis as about_axis
-
-# Moment about the point itself: the integral of r.r dm = tr(I) / 2
-from eomgen.model.outputs.masses import polar as polar
-
-# P = tr(I) / 2 - I, the integrals of x_i x_j dm: moments about planes, and the textbook's products with a plus
-from eomgen.model.outputs.masses import second_moments as second_moments
+# I of some bodies about a point: integral (r.r 1 - r r^T) dm [kg m^2]
+from eomgen.model.outputs.masses import InertiaTensor as InertiaTensor
 
 # Field of a part -> its meaning, by the docstring of its class
 from eomgen.model.part import meanings as meanings

@@ -13,7 +13,7 @@ from typing import Any
 
 from eomgen.errors import HIDDEN, visible
 from eomgen.frozen import dataclass
-from eomgen.model import Model, rotation_of, tables_read
+from eomgen.model import Model, UnitQuaternion, tables_read
 from eomgen.resources import check_patience
 from eomgen.symbolic.expression import Fraction, Matrix, Vector
 from eomgen.symbolic.numeric import fifty_digits, tolerances
@@ -115,7 +115,7 @@ def in_radians(degrees: Decimal) -> Decimal:
 def turned_by(quaternion: Sequence[Decimal]) -> Matrix:
     """The rotation of a quaternion of any length, scalar first."""
     length = sum((x * x for x in quaternion), ZERO).sqrt()
-    R: Matrix = rotation_of("quaternion", tuple(x / length for x in quaternion))
+    R: Matrix = UnitQuaternion(*(x / length for x in quaternion)).rotation
     return R
 
 

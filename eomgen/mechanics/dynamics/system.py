@@ -18,7 +18,7 @@ from eomgen.mechanics.kinematics import (
     SystemScene,
     shorter,
 )
-from eomgen.model import Contact, Model, Table, rate_matrix_of
+from eomgen.model import Contact, Model, Table, UnitQuaternion
 from eomgen.symbolic.exact import cramer, vanishes
 from eomgen.symbolic.expression import (
     Fraction,
@@ -508,7 +508,7 @@ def _quaternion_rates(scope: Scope, place: dict[str, int]) -> SpeedRows:
     """e' = 1/2 e o (0, w), one row for each of its rates."""
     rows: SpeedRows = {}
     for four, each in zip(scope.quaternions, scope.model.quaternions, strict=True):
-        for e, factors in zip(four, rate_matrix_of(four), strict=True):
+        for e, factors in zip(four, UnitQuaternion(*four).rates_by_spin, strict=True):
             row: list[Scalar] = [0] * len(place)
             for name, factor in zip(each.speeds, factors, strict=True):
                 row[place[name]] = factor

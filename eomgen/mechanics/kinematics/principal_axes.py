@@ -10,7 +10,7 @@ import numpy as np
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics.motion import Motion
 from eomgen.mechanics.kinematics.symbols import Scope
-from eomgen.model import MassProperties, about_axis, polar, second_moments
+from eomgen.model import InertiaTensor, MassProperties
 from eomgen.symbolic.exact import common_factor, roots, sign_of_terms, simplest, vanishes
 from eomgen.symbolic.expression import (
     Fraction,
@@ -430,12 +430,12 @@ class InertiaSum:
             first = first + row.sign * row.mass.m * row.mass.com
         return Vector(self.short(over(x, self.m)) for x in first)
 
-    def tensor(self, point: Vector) -> Matrix:
+    def tensor(self, point: Vector) -> InertiaTensor:
         """The inertia about a point, axes of the rows."""
         total: Matrix = Matrix.of((Vector.ZERO, Vector.ZERO, Vector.ZERO))
         for row in self.rows:
             total = total + (row.own() + row.shift(point))
-        return Matrix.of((self.short(x) for x in line) for line in total)
+        return InertiaTensor(Vector(self.short(x) for x in line) for line in total)
 
 
 @dataclass(frozen=True)
@@ -458,7 +458,7 @@ class InertiaAbout:
         return InertiaAbout(sum, sum.com if point is None else point)
 
     @cached_property
-    def tensor(self) -> Matrix:
+    def tensor(self) -> InertiaTensor:
         return self.sum.tensor(self.point)
 
     @cached_property
@@ -468,12 +468,12 @@ class InertiaAbout:
     @property
     def polar(self) -> Scalar:
         """The moment about the point itself."""
-        return self.sum.short(polar(self.tensor))
+        return self.sum.short(self.tensor.polar)
 
     @property
     def planar(self) -> Vector:
         """The moments about the three planes through the point."""
-        P = second_moments(self.tensor)
+        P = self.tensor.second_moments
         return Vector(self.sum.short(P[k][k]) for k in range(3))
 
     def product(self, i: int, j: int) -> Scalar:
@@ -482,7 +482,7 @@ class InertiaAbout:
 
     def axial(self, along: Vector) -> Scalar:
         """The moment about the axis through the point in a direction."""
-        return self.sum.short(about_axis(self.tensor, along))
+        return self.sum.short(self.tensor.about_axis(along))
 
     def radius(self, moment: Scalar) -> Scalar:
         """k = sqrt(I/m), short where the moment is."""

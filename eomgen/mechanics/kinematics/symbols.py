@@ -20,9 +20,9 @@ from eomgen.model import (
     Model,
     PlacedPiece,
     Unit,
+    UnitQuaternion,
     in_order,
     no_orientation,
-    spin_of_quaternion,
 )
 from eomgen.symbolic.exact import cancelled, readable_all
 from eomgen.symbolic.expression import (
@@ -497,7 +497,7 @@ def _speeds_by_rates(model: Model, names: Mapping[str, Scalar]) -> dict[str, Sca
     found = {name: part.rate.evaluate(names) for name, part in model.speeds.items() if part.rate is not None}
     for each in model.quaternions:
         e, rates = (tuple(names[name + prime] for name in each.coordinates) for prime in ("", "'"))
-        found |= dict(zip(each.speeds, spin_of_quaternion(e, rates), strict=True))
+        found |= dict(zip(each.speeds, UnitQuaternion(*e).spin(rates), strict=True))
     return found
 
 

@@ -20,7 +20,7 @@ from eomgen.mechanics.linearization.reference import (
     ReferenceMotion,
 )
 from eomgen.mechanics.state import At, Entries, NumberField
-from eomgen.model import rotation_of
+from eomgen.model import UnitQuaternion
 from eomgen.symbolic.exact import Polynomial, cramer
 from eomgen.symbolic.expression import Matrix, Node, Vector, is_zero, symbols_of
 from eomgen.symbolic.numeric import fifty_digits, tolerances, without_noise
@@ -556,7 +556,7 @@ class SpinAxis:
     @property
     def R(self) -> Matrix:
         """The body's axes in those of what carries it."""
-        return rotation_of("quaternion", self.four)
+        return UnitQuaternion(*self.four).rotation
 
 
 def spinning(reference: ReferenceMotion, choice: Choice) -> tuple[SpinAxis, ...]:

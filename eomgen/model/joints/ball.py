@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 from itertools import product as combinations
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, NamedTuple
 
 from eomgen.frozen import dataclass
 from eomgen.model.catalog import Catalog
@@ -122,7 +122,7 @@ def turning_columns(sequence: str, angles: tuple[Any, ...]) -> tuple[Column, ...
 
 def rotation_of(orientation: str, s: tuple[Any, ...]) -> Matrix:
     """R at the angles of a sequence, or at a quaternion of norm 1."""
-    return _by_quaternion(s) if orientation == "quaternion" else rotation_by(orientation, s)
+    return UnitQuaternion(*s).rotation if orientation == "quaternion" else rotation_by(orientation, s)
 
 
 def columns_of(orientation: str, s: tuple[Any, ...]) -> tuple[Column, ...]:
@@ -132,34 +132,42 @@ def columns_of(orientation: str, s: tuple[Any, ...]) -> tuple[Column, ...]:
     return turning_columns(orientation, s)
 
 
-def _by_quaternion(e: tuple[Any, ...]) -> Matrix:
-    """R = (e0^2 - v.v) 1 + 2 v v^T + 2 e0 v~, v = (e1, e2, e3); where e . e = 1 it is a rotation."""
-    e0, e1, e2, e3 = e
-    return Matrix.of(
-        (
-            (e0 * e0 + e1 * e1 - e2 * e2 - e3 * e3, 2 * (e1 * e2 - e0 * e3), 2 * (e1 * e3 + e0 * e2)),
-            (2 * (e1 * e2 + e0 * e3), e0 * e0 - e1 * e1 + e2 * e2 - e3 * e3, 2 * (e2 * e3 - e0 * e1)),
-            (2 * (e1 * e3 - e0 * e2), 2 * (e2 * e3 + e0 * e1), e0 * e0 - e1 * e1 - e2 * e2 + e3 * e3),
+class UnitQuaternion(NamedTuple):
+    """e0, e1, e2, e3, scalar first, child to parent, of norm 1."""
+
+    e0: Any
+    e1: Any
+    e2: Any
+    e3: Any
+
+    @property
+    def rotation(self) -> Matrix:
+        """R = (e0^2 - v.v) 1 + 2 v v^T + 2 e0 v~, v = (e1, e2, e3); where e . e = 1 it is a rotation."""
+        e0, e1, e2, e3 = self
+        return Matrix.of(
+            (
+                (e0 * e0 + e1 * e1 - e2 * e2 - e3 * e3, 2 * (e1 * e2 - e0 * e3), 2 * (e1 * e3 + e0 * e2)),
+                (2 * (e1 * e2 + e0 * e3), e0 * e0 - e1 * e1 + e2 * e2 - e3 * e3, 2 * (e2 * e3 - e0 * e1)),
+                (2 * (e1 * e3 - e0 * e2), 2 * (e2 * e3 + e0 * e1), e0 * e0 - e1 * e1 - e2 * e2 + e3 * e3),
+            )
         )
-    )
 
-
-def spin_of_quaternion(e: tuple[Any, ...], rate: tuple[Any, ...]) -> Vector:
-    """w = 2 Im(e* o e'), child's axes."""
-    (e0, e1, e2, e3), (d0, d1, d2, d3) = e, rate
-    return Vector(
-        (
-            2 * (e0 * d1 - e1 * d0 - e2 * d3 + e3 * d2),
-            2 * (e0 * d2 - e2 * d0 - e3 * d1 + e1 * d3),
-            2 * (e0 * d3 - e3 * d0 - e1 * d2 + e2 * d1),
+    def spin(self, rates: tuple[Any, ...]) -> Vector:
+        """w = 2 Im(e* o e'), child's axes."""
+        (e0, e1, e2, e3), (d0, d1, d2, d3) = self, rates
+        return Vector(
+            (
+                2 * (e0 * d1 - e1 * d0 - e2 * d3 + e3 * d2),
+                2 * (e0 * d2 - e2 * d0 - e3 * d1 + e1 * d3),
+                2 * (e0 * d3 - e3 * d0 - e1 * d2 + e2 * d1),
+            )
         )
-    )
 
-
-def rate_matrix_of(e: tuple[Any, ...]) -> tuple[Vector, Vector, Vector, Vector]:
-    """The rows of e' = G w: half the quaternion's products with the units i, j, k."""
-    e0, e1, e2, e3 = (HALF * x for x in e)
-    return (Vector((-e1, -e2, -e3)), Vector((e0, -e3, e2)), Vector((e3, e0, -e1)), Vector((-e2, e1, e0)))
+    @property
+    def rates_by_spin(self) -> tuple[Vector, Vector, Vector, Vector]:
+        """The rows of e' = G w: half the quaternion's products with the units i, j, k."""
+        e0, e1, e2, e3 = (HALF * x for x in self)
+        return (Vector((-e1, -e2, -e3)), Vector((e0, -e3, e2)), Vector((e3, e0, -e1)), Vector((-e2, e1, e0)))
 
 
 # -------- spherical -------------------------------------------------------------------------------------------

@@ -95,28 +95,33 @@ MASS_OF = OutputFunction(
 HALF = Fraction(1, 2)
 
 
-def about_axis(I: Matrix, along: Vector) -> Scalar:
-    """d.I d / d.d, the moment about the axis through the tensor's point in the direction d, of any length."""
-    return over(along @ (I @ along), along @ along)
+class InertiaTensor(Matrix):
+    """I of some bodies about a point: integral (r.r 1 - r r^T) dm [kg m^2]."""
+
+    __slots__ = ()
+
+    def about_axis(self, along: Vector) -> Scalar:
+        """d.I d / d.d, the moment about the axis through the tensor's point in the direction d, of any length."""
+        return over(along @ (self @ along), along @ along)
+
+    @property
+    def polar(self) -> Scalar:
+        """Moment about the point itself: the integral of r.r dm = tr(I) / 2."""
+        found: Scalar = HALF * (self[0][0] + self[1][1] + self[2][2])
+        return found
+
+    @property
+    def second_moments(self) -> Matrix:
+        """P = tr(I) / 2 - I, the integrals of x_i x_j dm: moments about planes, and the textbook's products, with +."""
+        half = self.polar
+        return Matrix.of(((half if i == j else 0) - self[i][j] for j in range(3)) for i in range(3))
 
 
-def polar(I: Matrix) -> Scalar:
-    """Moment about the point itself: the integral of r.r dm = tr(I) / 2."""
-    found: Scalar = HALF * (I[0][0] + I[1][1] + I[2][2])
-    return found
-
-
-def second_moments(I: Matrix) -> Matrix:
-    """P = tr(I) / 2 - I, the integrals of x_i x_j dm: moments about planes, and the textbook's products with a plus."""
-    half = polar(I)
-    return Matrix.of(((half if i == j else 0) - I[i][j] for j in range(3)) for i in range(3))
-
-
-def _tensor(scene: OutputContext, call: Call, first: int, *, about_z: bool = False) -> Matrix:
+def _tensor(scene: OutputContext, call: Call, first: int, *, about_z: bool = False) -> InertiaTensor:
     """I_P of the bodies from the argument `first` on, at the state."""
     bodies = bodies_from(scene, call, first)
     refuse_unknown(scene, call, bodies, about_z=about_z)
-    return Matrix.of(scene.placed(*scene.tensor(scene.position(call.name_at(0)), bodies)))
+    return InertiaTensor(scene.placed(*scene.tensor(scene.position(call.name_at(0)), bodies)))
 
 
 def _axis_at(call: Call, k: int) -> int:
@@ -139,19 +144,19 @@ def _direction(scene: OutputContext, call: Call) -> Vector:
 
 def _about_axis(scene: OutputContext, call: Call) -> Scalar:
     along = _direction(scene, call)
-    return about_axis(_tensor(scene, call, 2, about_z=is_zero(along[0]) and is_zero(along[1])), along)
+    return _tensor(scene, call, 2, about_z=is_zero(along[0]) and is_zero(along[1])).about_axis(along)
 
 
 def _about_point(scene: OutputContext, call: Call) -> Scalar:
     """A body of the plane that is given by its moment about z counts as thin: its I_xx + I_yy is I_zz."""
     thin = scene.known_about_z(bodies_from(scene, call, 1))
     missing = HALF * sum(scene.mass(body).I[2][2] for body in thin)
-    found: Scalar = polar(_tensor(scene, call, 1, about_z=True)) + missing
+    found: Scalar = _tensor(scene, call, 1, about_z=True).polar + missing
     return found
 
 
 def _second_moment(scene: OutputContext, call: Call, i: int, j: int, first: int) -> Scalar:
-    found: Scalar = second_moments(_tensor(scene, call, first))[i][j]
+    found: Scalar = _tensor(scene, call, first).second_moments[i][j]
     return found
 
 
