@@ -1,17 +1,7 @@
 """Door of the room: what other rooms may import from `eomgen.model`."""
 
-# The parameters, each after those in its expression; and the rings of those that need one another
-# True if a body can have the moments: J = tr(I)/2 - I has no negative eigenvalue (by its principal minors)
-from eomgen.model.checks.bodies import possible as possible
-
 # A body made of pieces: its mass, mass centre and inertia about it, body axes
 from eomgen.model.composite import Composite as Composite
-
-# One piece where it is in the body
-from eomgen.model.composite import PlacedPiece as PlacedPiece
-
-# Pose of a piece's frame in the body: rotated as `turned` says, then by `angle` about `axis`
-from eomgen.model.composite import pose_of as pose_of
 
 # A constraint between bodies, or between coordinates
 from eomgen.model.constraints.base import Constraint as Constraint
@@ -94,13 +84,6 @@ from eomgen.model.inference import Dimension as Dimension
 
 # e0, e1, e2, e3, scalar first, child to parent, of norm 1
 from eomgen.model.joints.ball import UnitQuaternion as UnitQuaternion
-from eomgen.model.joints.base import Z as Z
-
-# The rotation that turns one after the other make, each about the axes that the one before left
-from eomgen.model.joints.base import oriented as oriented
-
-# The axis over its length, exactly
-from eomgen.model.joints.base import unit as unit
 
 # Dry friction along a variable of a joint
 from eomgen.model.kinds import JointFriction as JointFriction
@@ -123,12 +106,6 @@ from eomgen.model.outputs.base import OutputSource as OutputSource
 
 # The argument k of a call, a formula; a lone name or member reads like a reference
 from eomgen.model.outputs.base import formula_at as formula_at
-
-# The second argument: L-c reads like a member
-from eomgen.model.outputs.forces import distance_of as distance_of
-
-# I of some bodies about a point: integral (r.r 1 - r r^T) dm [kg m^2]
-from eomgen.model.outputs.masses import InertiaTensor as InertiaTensor
 
 # Field of a part -> its meaning, by the docstring of its class
 from eomgen.model.part import meanings as meanings
@@ -222,6 +199,9 @@ from eomgen.model.restated import freed as freed
 # A function of time through samples, for `motion`, `rate`, `acceleration` or an input; arrays are welcome
 from eomgen.model.sampled_laws import samples as samples
 
+# I of some bodies about a point: the integral of (r.r 1 - r r^T) dm, 3 x 3 [kg m^2]
+from eomgen.model.shapes.base import InertiaMatrix as InertiaMatrix
+
 # Mass m [kg], mass centre com (3, body axes) [m], inertia I about it (3 x 3, body axes) [kg m^2]
 from eomgen.model.shapes.base import MassProperties as MassProperties
 
@@ -255,9 +235,6 @@ from eomgen.model.shapes.forms import RevolutionForm as RevolutionForm
 # after the name of an output's column, where another column has that name
 from eomgen.model.units import OUTPUT as OUTPUT
 from eomgen.model.values import in_order as in_order
-
-# The error of a quaternion that is 0 at the start
-from eomgen.model.values import no_orientation as no_orientation
 
 # Place in a text, and what is being written there
 from eomgen.model.written_text import Cursor as Cursor

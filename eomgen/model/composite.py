@@ -7,14 +7,13 @@ with s_k = -1 for a hole, which is taken to lie wholly inside the other pieces.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from eomgen.frozen import dataclass
-from eomgen.model.joints.base import Z, oriented, unit, vector
 from eomgen.model.kinds import ValueOf
 from eomgen.model.shapes import MassProperties
-from eomgen.symbolic.expression import Matrix, Pose, Vector, cos, is_zero, over, sin
+from eomgen.symbolic.expression import Matrix, Pose, Vector, is_zero, over
 
 
 @dataclass(frozen=True)
@@ -31,7 +30,7 @@ class PlacedPiece:
 
     def pose(self, value: ValueOf) -> Pose:
         """Pose of its frame in the body."""
-        return pose_of(self.piece, value)
+        return self.piece.pose(value)  # type: ignore[no-any-return]
 
     @property
     def sign(self) -> int:
@@ -62,6 +61,15 @@ class Composite:
         for part in placed:
             I = I + part.sign * part.mass.about(com)
         return Composite(placed, MassProperties(m, com, I))
+
+    def written(self, form: Callable[[list[Any]], Sequence[Any]]) -> Composite:
+        """The same with all its scalars, those of the whole first, in another form."""
+        every = [self.whole, *(placed.mass for placed in self.pieces)]
+        scalars = form([x for mass in every for x in mass.scalars])
+        size = len(self.whole.scalars)
+        whole, *masses = (MassProperties.of_scalars(scalars[k : k + size]) for k in range(0, len(scalars), size))
+        pieces = (PlacedPiece(placed.piece, mass) for placed, mass in zip(self.pieces, masses, strict=True))
+        return Composite(tuple(pieces), whole)
 
 
 def masses_of(pieces: Sequence[Any], mass: Any, value: ValueOf) -> tuple[Any, ...]:
@@ -100,18 +108,9 @@ def _sign(piece: Any) -> int:
 def _placed(piece: Any, m: Any, value: ValueOf) -> MassProperties:
     """The mass properties of a piece in the body's axes."""
     own = piece.shape.of_mass(m, value)
-    pose = pose_of(piece, value)
+    pose = piece.pose(value)
     I = pose.R @ own.I @ pose.R.T
     return MassProperties(m, pose.point(own.com), I)
-
-
-def pose_of(piece: Any, value: ValueOf) -> Pose:
-    """Pose of a piece's frame in the body: rotated as `turned` says, then by `angle` about `axis`."""
-    R = oriented(piece.turned, value)
-    if piece.angle is not None:
-        angle = value(piece.angle)
-        R = R @ Matrix.rotation(unit(vector(piece.axis, value, Z)), cos(angle), sin(angle))
-    return Pose(R, vector(piece.at, value))
 
 
 def _weights(pieces: Sequence[Any], masses: Sequence[Any], value: ValueOf) -> list[Any]:

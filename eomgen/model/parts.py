@@ -27,7 +27,7 @@ from eomgen.model.fields import (
     WrittenEquation,
 )
 from eomgen.model.joints import Joint
-from eomgen.model.joints.base import Turns
+from eomgen.model.joints.base import Turns, Z, oriented, vector
 from eomgen.model.joints.placed import Placed
 from eomgen.model.kinds import (
     ConstantAngle,
@@ -47,13 +47,14 @@ from eomgen.model.kinds import (
     Text,
     TimeLaw,
     TwoOwnPoints,
+    ValueOf,
 )
 from eomgen.model.part import MADE, Part, PartRule, SeamRule
 from eomgen.model.positions import DocumentPath
 from eomgen.model.quantities import Unit
 from eomgen.model.shapes import Shape
 from eomgen.model.shapes.lines import Particle
-from eomgen.symbolic.expression import Expression
+from eomgen.symbolic.expression import Expression, Matrix, Pose, cos, sin
 
 UnitText = Annotated[Unit, UNIT]
 ShapeField = Annotated[Shape, SeamRule("shape", shapes.ALL)]
@@ -219,6 +220,14 @@ class Piece(Part):
     angle: ConstantAngle | None = None
     axis: SpaceDirection | None = None
     hole: Flag = False
+
+    def pose(self, value: ValueOf) -> Pose:
+        """Pose of its frame in the body: rotated as `turned` says, then by `angle` about `axis`."""
+        R = oriented(self.turned, value)
+        if self.angle is not None:
+            angle = value(self.angle)
+            R = R @ Matrix.rotation(vector(self.axis, value, Z).unit, cos(angle), sin(angle))
+        return Pose(R, vector(self.at, value))
 
 
 Pieces = Annotated[tuple[Piece, ...], ListRule(PartRule(Piece))]

@@ -14,16 +14,7 @@ from typing import Any
 
 from eomgen.errors import ExpressionError, UsageError
 from eomgen.frozen import dataclass
-from eomgen.symbolic.expression import (
-    Expression,
-    Fraction,
-    as_expression,
-    fraction_of,
-    over,
-    parse,
-    parse_equation,
-    skip_space,
-)
+from eomgen.symbolic.expression import Expression, Fraction, as_expression, fraction_of, over, parse, parse_equation
 
 LONGEST = 80  # characters
 LARGEST_EXPONENT = 9
@@ -65,10 +56,12 @@ class Unit:
                 "a unit is missing" if not text.strip() else "the unit is too long", fix="write kg*m^2"
             )
         total, opened, group, direction, needed = Unit(text), -1, 1, 1, True
-        position = skip_space(text, 0)
+        position = 0
         while position < len(text):
             character = text[position]
-            if needed and character == "(" and opened < 0:
+            if character.isspace():
+                pass
+            elif needed and character == "(" and opened < 0:
                 opened, group, direction = position, direction, 1
             elif not needed and character == ")" and opened >= 0:
                 opened, group = -1, 1
@@ -81,7 +74,7 @@ class Unit:
                 raised = position and text[position - 1].isalpha() and character.isdigit()
                 fix = f"write {text[:position]}^{text[position:]}" if raised else "write kg*m^2"
                 raise ExpressionError(f"{character!r} has no place in the unit '{text}'", position, fix)
-            position = skip_space(text, position + 1)
+            position += 1
         if needed or opened >= 0:
             what = "'(' is never closed" if opened >= 0 else "a unit is missing at the end"
             raise ExpressionError(what, max(opened, 0) if opened >= 0 else len(text) - 1)

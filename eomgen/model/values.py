@@ -100,7 +100,7 @@ class Numbers:
             u[name] = _float(speed.start, lookup, f"speeds.{name}")
         u |= {name: _float(state.start, lookup, f"states.{name}") for name, state in self.states.items()}
         for each in self.quaternions:
-            q |= dict(zip(each.coordinates, _normed([q[name] for name in each.coordinates], each.body), strict=True))
+            q |= dict(zip(each.coordinates, _normed([q[name] for name in each.coordinates], each), strict=True))
         return q, u
 
     def first_guesses(self, parameters: Mapping[str, Any] | None = None) -> dict[str, float]:
@@ -135,7 +135,7 @@ class Numbers:
         return read
 
 
-def _normed(e: list[float], body: str) -> list[float]:
+def _normed(e: list[float], quaternion: Quaternion) -> list[float]:
     """A quaternion over its norm.
 
     Raises:
@@ -143,17 +143,8 @@ def _normed(e: list[float], body: str) -> list[float]:
     """
     norm = math.hypot(*e)  # squares of large ones are beyond doubles
     if norm == 0:
-        raise no_orientation(body)
+        raise quaternion.no_orientation()
     return [x / norm for x in e]
-
-
-def no_orientation(body: str) -> ModelError:
-    """The error of a quaternion that is 0 at the start."""
-    return ModelError(
-        f"the quaternion of body '{body}' starts at 0",
-        f"bodies.{body}.joint.quaternion",
-        "start = 1 of its first coordinate: no turn",
-    )
 
 
 def _value(expression: Expression, values: Mapping[str, Any], where: str) -> AnyNumber:
@@ -203,6 +194,14 @@ class Quaternion:
     body: str
     coordinates: tuple[str, ...]
     speeds: tuple[str, ...]
+
+    def no_orientation(self) -> ModelError:
+        """The error of a quaternion that is 0 at the start."""
+        return ModelError(
+            f"the quaternion of body '{self.body}' starts at 0",
+            f"bodies.{self.body}.joint.quaternion",
+            "start = 1 of its first coordinate: no turn",
+        )
 
 
 # -------- arithmetic -------------------------------------------------------------------------------------------

@@ -19,6 +19,7 @@ from typing import Any
 
 from eomgen.errors import ModelError, ToolMissing
 from eomgen.files import read
+from eomgen.model import InertiaMatrix
 from eomgen.robots.mjcf_acting import (
     BALL,
     FREE,
@@ -50,7 +51,6 @@ from eomgen.robots.tables import (
     reported_left,
     signed_sum,
     six,
-    tensor_of,
     without_empty,
 )
 from eomgen.robots.urdf import free_joint, turned_freely, with_mass
@@ -139,7 +139,7 @@ def _body(r: CompiledRobot, k: int) -> None:
     if mass:
         R, _ = turn_by(m.body_iquat[k])
         xx, yy, zz = (decimal_of_double(x) for x in m.body_inertia[k])
-        tensor = tensor_of(xx, yy, zz, ZERO, ZERO, ZERO)
+        tensor = InertiaMatrix.of_moments(xx, yy, zz, ZERO, ZERO, ZERO)
         center = decimals(decimal_of_double(x) for x in m.body_ipos[k])
         body |= with_mass({"mass": mass}, center, six(tensor if R == Matrix.IDENTITY else inertia_in(R, tensor)))
     if r.points.get(k):

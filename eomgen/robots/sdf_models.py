@@ -18,7 +18,7 @@ import numpy as np
 from eomgen.errors import ModelError
 from eomgen.files import read
 from eomgen.frozen import dataclass
-from eomgen.model import nearest
+from eomgen.model import InertiaMatrix, nearest
 from eomgen.robots.tables import (
     DIGITS,
     ORIGIN,
@@ -32,7 +32,6 @@ from eomgen.robots.tables import (
     inertia_in,
     roll_pitch_yaw,
     six,
-    tensor_of,
     turned_by,
 )
 from eomgen.robots.urdf import with_mass
@@ -313,7 +312,9 @@ def link_masses(link: XmlElement, placed: Callable[[XmlElement], Pose], files: t
         element = None if tensor is None else tensor.one(key)
         if element is not None:
             entries[key] = element.value()[0]
-    return with_mass({"mass": kilograms}, frame.p, six(inertia_in(frame.R, tensor_of(*entries.values()))))
+    return with_mass(
+        {"mass": kilograms}, frame.p, six(inertia_in(frame.R, InertiaMatrix.of_moments(*entries.values())))
+    )
 
 
 def _refuse_negative(mass: XmlElement | None, kilograms: Decimal) -> None:
@@ -355,7 +356,7 @@ def _about(part: MassPart, center: Vector) -> Matrix:
         part.tensor[i][j] + part.mass * ((square if i == j else ZERO) - d[i] * d[j])
         for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))
     )
-    return tensor_of(xx, yy, zz, xy, yz, zx)
+    return InertiaMatrix.of_moments(xx, yy, zz, xy, yz, zx)
 
 
 def _part(shape: XmlElement, usual: XmlElement | None, at: Pose, files: tuple[str, ...]) -> MassPart:
@@ -391,7 +392,7 @@ def _simple(what: XmlElement, density: Decimal) -> MassPart:
 
 def _diagonal(mass: Decimal, moments: Sequence[Decimal], down: Decimal = ZERO) -> MassPart:
     x, y, z = (mass * moment for moment in moments)
-    return MassPart(mass, Vector((ZERO, ZERO, -down)), tensor_of(x, y, z, ZERO, ZERO, ZERO))
+    return MassPart(mass, Vector((ZERO, ZERO, -down)), InertiaMatrix.of_moments(x, y, z, ZERO, ZERO, ZERO))
 
 
 def _box(s: Sequence[Decimal], density: Decimal, pi: Decimal) -> MassPart:
@@ -421,7 +422,7 @@ def _capsule(s: Sequence[Decimal], density: Decimal, pi: Decimal) -> MassPart:
     mass = tube + ball
     across = tube * (r * r / 4 + l * l / 12) + ball * (2 * r * r / 5 + l * l / 4 + 3 * l * r / 8)
     along = tube * r * r / 2 + ball * 2 * r * r / 5
-    return MassPart(mass, ORIGIN, tensor_of(across, across, along, ZERO, ZERO, ZERO))
+    return MassPart(mass, ORIGIN, InertiaMatrix.of_moments(across, across, along, ZERO, ZERO, ZERO))
 
 
 def _cone(s: Sequence[Decimal], density: Decimal, pi: Decimal) -> MassPart:
@@ -454,7 +455,7 @@ def _mesh(mesh: XmlElement, density: Decimal, files: tuple[str, ...]) -> MassPar
     found = enclosed(path, [1.0] * 3 if scale is None else [float(x) for x in scale.value(3)])
     S = [[density * decimal_of_double(float(x)) for x in row] for row in found.second]
     xx, yy, zz = (S[i][i] for i in range(3))
-    tensor = tensor_of(yy + zz, zz + xx, xx + yy, -S[0][1], -S[1][2], -S[2][0])
+    tensor = InertiaMatrix.of_moments(yy + zz, zz + xx, xx + yy, -S[0][1], -S[1][2], -S[2][0])
     return MassPart(
         density * decimal_of_double(found.volume), decimals(decimal_of_double(float(x)) for x in found.center), tensor
     )

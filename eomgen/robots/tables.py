@@ -167,11 +167,6 @@ def inertia_in(R: Matrix, tensor: Matrix) -> Matrix:
     return R @ tensor @ R.T
 
 
-def tensor_of(xx: Decimal, yy: Decimal, zz: Decimal, xy: Decimal, yz: Decimal, zx: Decimal) -> Matrix:
-    """A symmetric matrix."""
-    return Matrix.of(((xx, xy, zx), (xy, yy, yz), (zx, yz, zz)))
-
-
 def six(I: Matrix) -> list[Decimal]:
     """xx, yy, zz, xy, yz, zx of a tensor; of a diagonal one three."""
     found = [computed(x) for x in (I[0][0], I[1][1], I[2][2], I[0][1], I[1][2], I[0][2])]

@@ -14,7 +14,7 @@ from typing import Any
 
 from eomgen.errors import ModelError
 from eomgen.frozen import dataclass
-from eomgen.model import nearest, possible
+from eomgen.model import InertiaMatrix, nearest
 from eomgen.robots.tables import (
     NO_COUNTERPART,
     ORIGIN,
@@ -39,7 +39,6 @@ from eomgen.robots.tables import (
     roll_pitch_yaw,
     six,
     started_within,
-    tensor_of,
     without_empty,
 )
 from eomgen.robots.xml_tree import XmlElement, xml_tree
@@ -115,7 +114,11 @@ def massive(inertial: XmlElement | None) -> Entries:
             if entries[k] < 0:
                 tensor.read.discard(key)
                 entries[k] = ZERO
-        moments = six(inertia_in(R, tensor_of(*entries)) if R != Matrix.IDENTITY else tensor_of(*entries))
+        moments = six(
+            inertia_in(R, InertiaMatrix.of_moments(*entries))
+            if R != Matrix.IDENTITY
+            else InertiaMatrix.of_moments(*entries)
+        )
     return with_mass(found, center, moments)
 
 
@@ -126,7 +129,7 @@ def with_mass(found: Entries, center: Vector, moments: list[Decimal]) -> Entries
     if any(center):
         found["center"] = in_file(center)
     found["inertia"] = moments
-    if not possible([float(x) for x in moments]):
+    if not InertiaMatrix.of_moments(*map(float, moments)).is_possible():
         found["measured"] = True
     return found
 

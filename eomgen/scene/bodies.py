@@ -22,7 +22,6 @@ from eomgen.model import (
     PolygonForm,
     SpreadLoad,
     is_node,
-    pose_of,
 )
 from eomgen.scene.forms import ArrowForm, CoupleForm, FieldForm, LoadForm, PointForm, RodForm, SymbolForm
 from eomgen.scene.scene import Mark, SceneFrame
@@ -119,7 +118,7 @@ def piece_marks(system: System, body: str, parent: int, first: int) -> tuple[lis
                 marks.append(Mark(replace(form, hole=not form.hole), first + len(frames), "hole", body))
             elif not piece.hole:
                 marks.append(Mark(form, first + len(frames), "body", body))
-        frames.append(SceneFrame(body, parent, pose_of(piece, system.scope.value)))
+        frames.append(SceneFrame(body, parent, piece.pose(system.scope.value)))
     return frames, marks
 
 

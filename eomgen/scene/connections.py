@@ -14,17 +14,7 @@ from typing import Any
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import GROUND, BodyLink, SystemScene
-from eomgen.model import (
-    ArcForm,
-    Couple,
-    EllipsoidForm,
-    LineForm,
-    Meeting,
-    PointForce,
-    Stop,
-    Strand,
-    unit,
-)
+from eomgen.model import ArcForm, Couple, EllipsoidForm, LineForm, Meeting, PointForce, Stop, Strand
 from eomgen.scene.bodies import gimbal_of, is_block, is_cylinder, parameters_as_drawn, seen, shaft_of, wedge_of
 from eomgen.scene.forms import (
     CylinderForm,
@@ -393,7 +383,7 @@ def _surface(system: System, meeting: Meeting, of: str) -> list[Mark]:
     flat, surface, scope = meeting.flat, meeting.round, system.scope
     frame = 0 if meeting.on is None else system.motion.index[meeting.on] + 1
     if flat is not None:
-        n = unit(scope.vector(flat.normal))
+        n = scope.vector(flat.normal).unit
         along = Vector((n[1], -n[0], 0)) if scope.model.space == "plane" else None
         at = _level(system, meeting)
         return [Mark(TrackForm(at, along, n), frame, "track", of)] if system.symbols.q and at is not None else []
@@ -438,7 +428,7 @@ def _point_support(system: System, meeting: Meeting, rows: Sequence[Any], of: st
     at = system.motion.position(system.motion.place(meeting.point))
     groove = meeting.groove
     if meeting.flat is not None:
-        n = unit(system.scope.vector(meeting.flat.normal))
+        n = system.scope.vector(meeting.flat.normal).unit
         if system.symbols.q and system.motion.moves(at):
             return []
         return [Mark(SymbolForm("roller", at, Vector((n[1], -n[0], 0))), 0, "support", of)]

@@ -33,7 +33,7 @@ from eomgen.model import (
     MassProperties,
     PointForce,
     UniformField,
-    distance_of,
+    formula_at,
 )
 from eomgen.symbolic.exact import simplest
 from eomgen.symbolic.expression import (
@@ -356,7 +356,7 @@ class Quantities:
             DerivationError: a body without section forces; something acts off a beam's axis, or at no place.
         """
         sections = [
-            RequestedSection(call, self.section(call.name_at(0)), distance_of(call).evaluate(self.names))
+            RequestedSection(call, self.section(call.name_at(0)), formula_at(call, 1).evaluate(self.names))
             for call in calls
         ]
         return FreeBodies.of(self.system, numbers, sections)

@@ -10,7 +10,7 @@ from typing import Any
 from eomgen.errors import DerivationError, NotYet
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics.symbols import Scope, shorter
-from eomgen.model import Couple, PointForce, Z, oriented
+from eomgen.model import Couple, PointForce
 from eomgen.symbolic.exact import vanishes
 from eomgen.symbolic.expression import (
     Fraction,
@@ -353,7 +353,7 @@ def _link(scope: Scope, name: str, links: list[BodyLink], index: dict[str, int])
     parent_name = parent_of(scope.model, name)
     parent = GROUND if parent_name is None else index[parent_name]
     above = None if parent == GROUND else links[parent]
-    before = Pose(oriented(joint.turned, scope.value), _seat(scope, joint))
+    before = Pose(joint.orientation_before(scope.value), _seat(scope, joint))
     point = Vector.ZERO if joint.point is None else body_points(scope, name)[joint.point]
     s = tuple(scope.value(e) for e in joint.variables(scope.model.space))
     s_rate = (*scope.time_derivative(s[: -4 if joint.spins else None]), *(scope.names[w] for w in joint.spins))
@@ -389,7 +389,7 @@ def _seen_from(motion: Motion, carrier: int) -> Motion:
 def _pose(above: BodyLink | None, local: Pose, angle: Scalar | None, point: Vector) -> Pose:
     """The child's frame in the ground; in the plane its rotation is that by its whole angle."""
     joint = (above.pose if above else Pose()).then(local)
-    R = joint.R if angle is None else Matrix.rotation(Z, cos(angle), sin(angle))
+    R = joint.R if angle is None else Matrix.rotation(Matrix.IDENTITY[2], cos(angle), sin(angle))
     return Pose(R, joint.p - R @ point)
 
 

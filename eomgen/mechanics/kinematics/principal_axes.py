@@ -10,7 +10,7 @@ import numpy as np
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics.motion import Motion
 from eomgen.mechanics.kinematics.symbols import Scope
-from eomgen.model import InertiaTensor, MassProperties
+from eomgen.model import InertiaMatrix, MassProperties
 from eomgen.symbolic.exact import common_factor, roots, sign_of_terms, simplest, vanishes
 from eomgen.symbolic.expression import (
     Fraction,
@@ -430,12 +430,12 @@ class InertiaSum:
             first = first + row.sign * row.mass.m * row.mass.com
         return Vector(self.short(over(x, self.m)) for x in first)
 
-    def tensor(self, point: Vector) -> InertiaTensor:
+    def tensor(self, point: Vector) -> InertiaMatrix:
         """The inertia about a point, axes of the rows."""
         total: Matrix = Matrix.of((Vector.ZERO, Vector.ZERO, Vector.ZERO))
         for row in self.rows:
             total = total + (row.own() + row.shift(point))
-        return InertiaTensor(Vector(self.short(x) for x in line) for line in total)
+        return InertiaMatrix(Vector(self.short(x) for x in line) for line in total)
 
 
 @dataclass(frozen=True)
@@ -458,7 +458,7 @@ class InertiaAbout:
         return InertiaAbout(sum, sum.com if point is None else point)
 
     @cached_property
-    def tensor(self) -> InertiaTensor:
+    def tensor(self) -> InertiaMatrix:
         return self.sum.tensor(self.point)
 
     @cached_property

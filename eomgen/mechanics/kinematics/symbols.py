@@ -13,17 +13,7 @@ from typing import Any
 
 from eomgen.errors import DerivationError, EomgenError, ExpressionError, ModelError
 from eomgen.frozen import dataclass
-from eomgen.model import (
-    Composite,
-    Coordinate,
-    MassProperties,
-    Model,
-    PlacedPiece,
-    Unit,
-    UnitQuaternion,
-    in_order,
-    no_orientation,
-)
+from eomgen.model import Composite, Coordinate, MassProperties, Model, Unit, UnitQuaternion, in_order
 from eomgen.symbolic.exact import cancelled, readable_all
 from eomgen.symbolic.expression import (
     Call,
@@ -233,7 +223,7 @@ class Scope:
                 continue
             norm = sqrt(sum((start[e] * start[e] for e in four), start=0))
             if is_zero(norm):
-                raise no_orientation(part.body)
+                raise part.no_orientation()
             found |= {e: over(start[e], norm) for e in four}
         return found
 
@@ -683,17 +673,4 @@ def _inertia(scope: Scope, body: str, inertia: tuple[Expression, ...] | None) ->
 def _put_together(scope: Scope, body: str) -> Composite:
     part = scope.model.bodies[body]
     composite = Composite.of(part.parts or (), part.mass, scope.value)
-    everything = [composite.whole, *(placed.mass for placed in composite.pieces)]
-    flat = readable_all([x for mass in everything for x in _flat(mass)], Work.VALUE, scope.positive)
-    whole, *masses = (_unflat(flat[k : k + 13]) for k in range(0, len(flat), 13))
-    pieces = tuple(PlacedPiece(p.piece, mass) for p, mass in zip(composite.pieces, masses, strict=True))
-    return Composite(pieces, whole)
-
-
-def _flat(mass: MassProperties) -> list[Scalar]:
-    return [mass.m, *mass.com, *(x for row in mass.I for x in row)]
-
-
-def _unflat(entries: Sequence[Scalar]) -> MassProperties:
-    m, *others = entries
-    return MassProperties(m, Vector(others[:3]), Matrix.of((others[3:6], others[6:9], others[9:12])))
+    return composite.written(lambda scalars: readable_all(scalars, Work.VALUE, scope.positive))

@@ -13,6 +13,7 @@ from eomgen.model.composite import Composite, sources
 from eomgen.model.diagnostics import Diagnostic, shown, whereabouts
 from eomgen.model.fields import Leaf, VectorRule
 from eomgen.model.positions import DocumentPath
+from eomgen.model.shapes.base import InertiaMatrix
 from eomgen.model.values import AnyNumber, in_order
 from eomgen.symbolic.expression import Expression, Vector
 from eomgen.symbolic.numeric import tolerances
@@ -256,32 +257,12 @@ def _inertia(path: DocumentPath, name: str, composite: Composite) -> Iterator[Di
     I = composite.whole.I
     moments = [_float(x) for x in (I[0][0], I[1][1], I[2][2], I[0][1], I[1][2], I[2][0])]
     size = max(abs(_float(x)) for p in composite.pieces for row in p.mass.about(composite.whole.com) for x in row)
-    if not possible(moments, size):
+    if not InertiaMatrix.of_moments(*moments).is_possible(size):
         listed = ", ".join(f"{x:g}" for x in moments)
         what = f"no body has the inertia of '{name}': [{listed}] breaks the triangle inequality"
         yield Diagnostic(
             path, what, "a hole lies inside the other parts, and is no heavier than what it is cut out of", key=True
         )
-
-
-# -------- triangle --------------------------------------------------------------------------------------------
-# Existence of a body with a given inertia: the triangle inequality, in any axes.
-
-
-def possible(moments: list[float], size: float = 0.0) -> bool:
-    """True if a body can have the moments: J = tr(I)/2 - I has no negative eigenvalue (by its principal minors).
-
-    Args:
-        moments: xx, yy, zz and then, where there are any, xy, yz, zx.
-        size: of what they were added up from, where that is larger than they are.
-    """
-    size = max(size, *map(abs, moments)) or 1.0
-    xx, yy, zz, xy, yz, zx = (x / size for x in (*moments, 0.0, 0.0, 0.0)[:6])
-    half = (xx + yy + zz) / 2
-    a, b, c = half - xx, half - yy, half - zz
-    determinant = a * (b * c - yz * yz) - xy * (xy * c + yz * zx) - zx * (xy * yz + b * zx)
-    second = (a * b - xy * xy, b * c - yz * yz, c * a - zx * zx)
-    return min(a, b, c, *second, determinant) >= -tolerances.SOLVED
 
 
 # -------- numbers ---------------------------------------------------------------------------------------------

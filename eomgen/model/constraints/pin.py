@@ -10,7 +10,7 @@ from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.row import AXIS_NAMES, ConstraintRow, scene_axes
 from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.forces.load import BodyPoint, Couple, LoadContext, PointForce
-from eomgen.model.joints.base import across, unit
+from eomgen.model.joints.base import across
 from eomgen.model.kinds import AxesName, Points, SpaceDirection
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression import Matrix, Scalar, Vector
@@ -73,7 +73,7 @@ class Pin(Constraint):
             rows += held_together(scene, first, other)
             if self.axis is not None and not scene.plane:
                 bodies = first[0], other[0]
-                n = unit(as_carried(scene, scene.carrier_of(*bodies), self._axis_at_start(scene)))
+                n = as_carried(scene, scene.carrier_of(*bodies), self._axis_at_start(scene)).unit
                 rows += [across_from(scene, bodies, e, n) for e in across(n)]
         return tuple(rows)
 
@@ -82,7 +82,7 @@ class Pin(Constraint):
         if self.axis is None or scene.plane:
             return ()
         first, *_ = named = [scene.place(point) for point in self.points]
-        n = unit(self._axis_at_start(scene))
+        n = self._axis_at_start(scene).unit
         return tuple(alike(scene, (first[0], other[0]), n) for other in others_of(scene, named))
 
     def _axis_at_start(self, scene: LoadContext) -> Vector:

@@ -14,7 +14,6 @@ from eomgen.model.constraints.plane import Touch, opposite, right
 from eomgen.model.constraints.row import ConstraintRow, Edge, direction_of
 from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.forces.load import BodyPoint, LoadContext
-from eomgen.model.joints.base import unit
 from eomgen.model.kinds import (
     BodyName,
     Direction,
@@ -135,7 +134,7 @@ class Wheel:
         return sqrt(k @ k) if wave is None else wave
 
     def _axle(self, scene: LoadContext) -> Vector:
-        return scene.orientation(self.body) @ unit(self.axis)
+        return scene.orientation(self.body) @ self.axis.unit
 
 
 @dataclass(frozen=True)
@@ -375,7 +374,7 @@ def _around(scene: LoadContext, track: Curved, n: Vector) -> tuple[Vector, ...]:
 
 def curved(scene: LoadContext, on: str | None, circle: Circle) -> Curved:
     """The circle of a model as it stands."""
-    axis = None if circle.axis is None else _carried(scene, on, unit(scene.vector(circle.axis)))
+    axis = None if circle.axis is None else _carried(scene, on, scene.vector(circle.axis).unit)
     return Curved(anchor_of(scene, on, circle.at), scene.value(circle.radius), -1 if circle.inside else 1, axis)
 
 

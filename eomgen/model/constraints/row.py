@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from eomgen.frozen import dataclass
 from eomgen.model.forces.load import Couple, LoadContext, PointForce
-from eomgen.model.joints.base import across, unit
+from eomgen.model.joints.base import across
 from eomgen.symbolic.expression import Fraction, Scalar, Vector
 from eomgen.symbolic.numeric import tolerances
 
@@ -61,7 +61,7 @@ def direction_of(scene: LoadContext, v: Vector) -> Vector:
     along = [k for k, x in enumerate(v) if not (type(x) is int and x == 0)]
     sense = scene.value_at_start(v[along[0]]) if len(along) == 1 else None
     if not sense:
-        return unit(v)
+        return v.unit
     x, y, z = ((1 if sense > 0 else -1) if k in along else 0 for k in range(3))
     return Vector((x, y, z))
 
@@ -70,7 +70,7 @@ def normals_of(scene: LoadContext, d: Vector) -> tuple[tuple[str, Vector], ...]:
     """Unit vectors across the unit vector d, with their names: in the plane its left normal, in space two."""
     if scene.plane:
         return (("n", Vector((-d[1], d[0], 0))),)
-    first, second = map(unit, across(d))
+    first, second = (n.unit for n in across(d))
     return ("n 1", first), ("n 2", second)
 
 

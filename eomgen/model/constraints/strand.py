@@ -10,7 +10,7 @@ from eomgen.frozen import dataclass
 from eomgen.model.constraints.plane import angle_of, left
 from eomgen.model.constraints.row import ConstraintRow, normals_of
 from eomgen.model.forces.load import BodyPoint, Couple, LoadContext, PointForce, Push
-from eomgen.model.joints.base import Z, unit
+from eomgen.model.joints.base import Z
 from eomgen.model.kinds import Wrap
 from eomgen.symbolic.expression import Scalar, Vector, over, sqrt
 from eomgen.symbolic.numeric import tolerances
@@ -41,7 +41,7 @@ class Stop:
             return Stop(scene, scene.place(item))
         place = (None, scene.ground_place(item.at)) if item.body is None else scene.own_place(item.body, None)
         radius = scene.radius(str(item.body)) if item.radius is None else scene.value(item.radius)
-        axis = Z if item.axis is None else unit(scene.vector(item.axis))
+        axis = Z if item.axis is None else scene.vector(item.axis).unit
         n = axis if item.body is None or scene.plane else scene.orientation(item.body) @ axis
         return Stop(scene, place, radius if item.turn == "cw" else -radius, n)
 

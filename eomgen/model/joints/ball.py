@@ -8,19 +8,7 @@ from eomgen.frozen import dataclass
 from eomgen.model.catalog import Catalog
 from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.fields import CONFIGURATION, FormulaRule, ListRule, NameRule, TextRule, VectorRule
-from eomgen.model.joints.base import (
-    Column,
-    Joint,
-    Move,
-    Scalars,
-    X,
-    Y,
-    Z,
-    angular,
-    linear,
-    unit,
-    vector,
-)
+from eomgen.model.joints.base import Column, Joint, Move, Scalars, X, Y, Z, angular, linear, vector
 from eomgen.model.kinds import Restitution, TurnsLimits, ValueOf
 from eomgen.model.part import PartRule
 from eomgen.model.positions import DocumentPath
@@ -291,7 +279,7 @@ class Universal(Joint):
         return (angular(Vector(tuple(first)).cross(Vector(tuple(second)))), *map(linear, (X, Y, Z)))
 
     def _normals(self, value: ValueOf) -> tuple[Vector, Vector]:
-        first, second = (unit(vector(axis, value)) for axis in self.axes)
+        first, second = (vector(axis, value).unit for axis in self.axes)
         return first, second
 
     def _second(self, s: Scalars, value: ValueOf) -> Matrix:

@@ -29,7 +29,7 @@ from eomgen.model.kinds import (
 from eomgen.model.part import Part, PartRule
 from eomgen.model.positions import DocumentPath
 from eomgen.model.shapes.forms import Form
-from eomgen.symbolic.expression import Expression, Matrix, Pose, Vector, cos, over, sin, sqrt
+from eomgen.symbolic.expression import Expression, Matrix, Pose, Vector, cos, sin
 
 # -------- moves -----------------------------------------------------------------------------------------------
 # Moves of a joint, as they are declared: one after another, each in the axes that those before left.
@@ -141,6 +141,10 @@ class Joint(Part):
     point: OwnPointName | None = None
     turned: Turns | None = None
     symbol: ReactionSymbolsField | None = None
+
+    def orientation_before(self, value: ValueOf) -> Matrix:
+        """The fixed rotation before the joint."""
+        return oriented(self.turned, value)
 
     @property
     def limits_of_variables(self) -> tuple[tuple[int, str, Limits], ...]:
@@ -256,20 +260,11 @@ def vector(components: tuple[Expression, ...] | None, value: ValueOf, default: V
     return Vector(values + [0] * (3 - len(values)))
 
 
-def unit(axis: Vector) -> Vector:
-    """The axis over its length, exactly."""
-    square = axis @ axis
-    if square == 1:
-        return axis
-    length = sqrt(square)
-    return Vector(over(a, length) for a in axis)
-
-
 def oriented(turns: tuple[Turned, ...] | None, value: ValueOf) -> Matrix:
     """The rotation that turns one after the other make, each about the axes that the one before left."""
     R = Matrix.IDENTITY
     for turn in turns or ():
-        axis = unit(vector(turn.axis, value, Z))
+        axis = vector(turn.axis, value, Z).unit
         angle = value(turn.angle)
         R = R @ Matrix.rotation(axis, cos(angle), sin(angle))
     return R

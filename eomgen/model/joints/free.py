@@ -21,21 +21,7 @@ from eomgen.model.joints.ball import (
     turning_diagnostics,
     turning_moves,
 )
-from eomgen.model.joints.base import (
-    Column,
-    Effort,
-    Joint,
-    Move,
-    PushAlong,
-    Scalars,
-    X,
-    Y,
-    Z,
-    angular,
-    linear,
-    unit,
-    vector,
-)
+from eomgen.model.joints.base import Column, Effort, Joint, Move, PushAlong, Scalars, X, Y, Z, angular, linear, vector
 from eomgen.model.kinds import (
     Angle,
     ConstantAngle,
@@ -178,7 +164,7 @@ class Fixed(Joint):
 
     def pose(self, s: Scalars, value: ValueOf) -> Pose:
         angle = self.turn(s, value)
-        return Pose(Matrix.rotation(unit(vector(self.axis, value, Z)), cos(angle), sin(angle)))
+        return Pose(Matrix.rotation(vector(self.axis, value, Z).unit, cos(angle), sin(angle)))
 
     def subspace(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
         return ()

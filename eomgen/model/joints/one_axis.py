@@ -21,7 +21,6 @@ from eomgen.model.joints.base import (
     across,
     angular,
     linear,
-    unit,
     vector,
 )
 from eomgen.model.kinds import (
@@ -192,7 +191,7 @@ class Revolute(AxisJoint):
         return (self.angle,)
 
     def normal(self, value: ValueOf) -> Vector:
-        return unit(vector(self.axis, value, Z))
+        return vector(self.axis, value, Z).unit
 
     def steps(self, value: ValueOf) -> tuple[tuple[Any, Any], ...]:
         return ((1, 0),)
@@ -263,7 +262,7 @@ class Prismatic(AxisJoint):
         return (self.displacement,)
 
     def normal(self, value: ValueOf) -> Vector:
-        return unit(vector(self.axis, value))
+        return vector(self.axis, value).unit
 
     def steps(self, value: ValueOf) -> tuple[tuple[Any, Any], ...]:
         return ((0, 1),)
@@ -336,7 +335,7 @@ class Cylindrical(AxisJoint):
         return (self.displacement, self.angle)
 
     def normal(self, value: ValueOf) -> Vector:
-        return unit(vector(self.axis, value, Z))
+        return vector(self.axis, value, Z).unit
 
     def steps(self, value: ValueOf) -> tuple[tuple[Any, Any], ...]:
         return ((0, 1), (1, 0))
@@ -415,7 +414,7 @@ class Screw(AxisJoint):
         return (self.angle,)
 
     def normal(self, value: ValueOf) -> Vector:
-        return unit(vector(self.axis, value, Z))
+        return vector(self.axis, value, Z).unit
 
     def steps(self, value: ValueOf) -> tuple[tuple[Any, Any], ...]:
         return ((1, value(self.pitch)),)

@@ -16,20 +16,7 @@ from eomgen.model.joints.ball import (
     turning_diagnostics,
     turning_moves,
 )
-from eomgen.model.joints.base import (
-    Column,
-    Effort,
-    Joint,
-    Move,
-    Scalars,
-    X,
-    Y,
-    Z,
-    angular,
-    linear,
-    unit,
-    vector,
-)
+from eomgen.model.joints.base import Column, Effort, Joint, Move, Scalars, X, Y, Z, angular, linear, vector
 from eomgen.model.kinds import Angle, SpaceDirection, ValueOf
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression import Expression, Matrix, Pose, Vector, as_expression, cos, sin
@@ -95,7 +82,7 @@ class Placed(Joint):
         along = tuple(linear(R_CP @ e) for e in (X, Y, Z)[:places])
         if self.orientation is not None:
             return (*along, *columns_of(self.orientation, s[places:]))
-        return (*along, angular(unit(vector(self.axis, value, Z))))
+        return (*along, angular(vector(self.axis, value, Z).unit))
 
     def complement(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
         return ()
@@ -109,4 +96,4 @@ class Placed(Joint):
     def _rotation(self, angles: Scalars, value: ValueOf) -> Matrix:
         if self.orientation is not None:
             return rotation_of(self.orientation, angles)
-        return Matrix.rotation(unit(vector(self.axis, value, Z)), cos(angles[0]), sin(angles[0]))
+        return Matrix.rotation(vector(self.axis, value, Z).unit, cos(angles[0]), sin(angles[0]))

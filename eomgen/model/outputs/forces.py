@@ -17,8 +17,9 @@ from eomgen.model.outputs.base import (
     ValueOf,
     along,
     component,
+    formula_at,
 )
-from eomgen.symbolic.expression import Call, Expression, Reference, Scalar, parse
+from eomgen.symbolic.expression import Call, Expression, Reference, Scalar
 
 # -------- reactions -------------------------------------------------------------------------------------------
 # reaction_x, reaction_n, reaction_couple, ...: of a constraint, or of the joint of a body, by the balance of the
@@ -246,18 +247,12 @@ TENSION = OutputFunction(
 # axial_force, shear_force, bending_moment: at a distance from the start of a body's line.
 
 
-def distance_of(call: Call) -> Expression:
-    """The second argument: L-c reads like a member."""
-    x = call.args[1]
-    return parse(x.name) if isinstance(x, Reference) else x
-
-
 def _section(scene: OutputContext, call: Call) -> Scalar:
     """bending_moment(beam, a), shear_force(beam, a, before)."""
     sides = [call.name_at(k) for k in range(2, len(call.args))]
     if any(name not in SIDES for name in sides):
         raise DerivationError(f"'{call}': the third argument is before or after", fix="N(body, x, before)")
-    x = distance_of(call).evaluate(scene.names)
+    x = formula_at(call, 1).evaluate(scene.names)
     return scene.section(call.name_at(0)).value(call.name, x, *sides)
 
 

@@ -18,7 +18,8 @@ from eomgen.model.outputs.base import (
     component,
     number_at,
 )
-from eomgen.symbolic.expression import Call, Fraction, Matrix, Scalar, Vector, is_zero, over
+from eomgen.model.shapes.base import InertiaMatrix
+from eomgen.symbolic.expression import Call, Fraction, Matrix, Scalar, Vector, is_zero
 
 # -------- bodies meant ----------------------------------------------------------------------------------------
 # Bodies to which a function of masses applies, and whether enough is known of them.
@@ -95,33 +96,11 @@ MASS_OF = OutputFunction(
 HALF = Fraction(1, 2)
 
 
-class InertiaTensor(Matrix):
-    """I of some bodies about a point: integral (r.r 1 - r r^T) dm [kg m^2]."""
-
-    __slots__ = ()
-
-    def about_axis(self, along: Vector) -> Scalar:
-        """d.I d / d.d, the moment about the axis through the tensor's point in the direction d, of any length."""
-        return over(along @ (self @ along), along @ along)
-
-    @property
-    def polar(self) -> Scalar:
-        """Moment about the point itself: the integral of r.r dm = tr(I) / 2."""
-        found: Scalar = HALF * (self[0][0] + self[1][1] + self[2][2])
-        return found
-
-    @property
-    def second_moments(self) -> Matrix:
-        """P = tr(I) / 2 - I, the integrals of x_i x_j dm: moments about planes, and the textbook's products, with +."""
-        half = self.polar
-        return Matrix.of(((half if i == j else 0) - self[i][j] for j in range(3)) for i in range(3))
-
-
-def _tensor(scene: OutputContext, call: Call, first: int, *, about_z: bool = False) -> InertiaTensor:
+def _tensor(scene: OutputContext, call: Call, first: int, *, about_z: bool = False) -> InertiaMatrix:
     """I_P of the bodies from the argument `first` on, at the state."""
     bodies = bodies_from(scene, call, first)
     refuse_unknown(scene, call, bodies, about_z=about_z)
-    return InertiaTensor(scene.placed(*scene.tensor(scene.position(call.name_at(0)), bodies)))
+    return InertiaMatrix(scene.placed(*scene.tensor(scene.position(call.name_at(0)), bodies)))
 
 
 def _axis_at(call: Call, k: int) -> int:

@@ -9,12 +9,54 @@ from eomgen.frozen import dataclass
 from eomgen.model.kinds import Mass, ValueOf
 from eomgen.model.part import Part
 from eomgen.model.shapes.forms import Form
-from eomgen.symbolic.expression import Matrix, SpatialInertia, Vector, parse
+from eomgen.symbolic.expression import Fraction, Matrix, Scalar, SpatialInertia, Vector, over, parse
 from eomgen.symbolic.numeric import tolerances
 
 Cell = Callable[[Sequence[Any]], Vector]
 PI = parse("pi")
 HALF, THIRD = 0.5, 1 / 3  # of a length in numbers
+
+
+class InertiaMatrix(Matrix):
+    """I of some bodies about a point: the integral of (r.r 1 - r r^T) dm, 3 x 3 [kg m^2]."""
+
+    __slots__ = ()
+
+    @classmethod
+    def of_moments(cls, xx: Any, yy: Any, zz: Any, xy: Any = 0, yz: Any = 0, zx: Any = 0) -> "InertiaMatrix":
+        """The symmetric matrix with these entries."""
+        return cls((Vector((xx, xy, zx)), Vector((xy, yy, yz)), Vector((zx, yz, zz))))
+
+    def about_axis(self, along: Vector) -> Scalar:
+        """d.I d / d.d, the moment about the axis through the point in the direction d, of any length."""
+        return over(along @ (self @ along), along @ along)
+
+    @property
+    def polar(self) -> Scalar:
+        """Moment about the point itself: the integral of r.r dm = tr(I) / 2."""
+        found: Scalar = Fraction(1, 2) * (self[0][0] + self[1][1] + self[2][2])
+        return found
+
+    @property
+    def second_moments(self) -> Matrix:
+        """P = tr(I) / 2 - I, the integrals of x_i x_j dm: moments about planes, and the textbook's products, with +."""
+        half = self.polar
+        return Matrix.of(((half if i == j else 0) - self[i][j] for j in range(3)) for i in range(3))
+
+    def is_possible(self, size: float = 0.0) -> bool:
+        """True if a body can have it, in numbers: no principal minor of P is negative (the triangle inequality).
+
+        Args:
+            size: of what the moments were added up from, where that is larger than they are.
+        """
+        (xx, xy, zx), (_, yy, yz), (_, _, zz) = self
+        size = max(size, *map(abs, (xx, yy, zz, xy, yz, zx))) or 1.0
+        xx, yy, zz, xy, yz, zx = (x / size for x in (xx, yy, zz, xy, yz, zx))
+        half = (xx + yy + zz) / 2
+        a, b, c = half - xx, half - yy, half - zz
+        determinant = a * (b * c - yz * yz) - xy * (xy * c + yz * zx) - zx * (xy * yz + b * zx)
+        second = (a * b - xy * xy, b * c - yz * yz, c * a - zx * zx)
+        return bool(min(a, b, c, *second, determinant) >= -tolerances.SOLVED)
 
 
 @dataclass(frozen=True)
@@ -29,6 +71,12 @@ class MassProperties:
     def scalars(self) -> tuple[Any, ...]:
         """m, com and I, row by row: 13 scalars."""
         return (self.m, *self.com, *(x for row in self.I for x in row))
+
+    @staticmethod
+    def of_scalars(scalars: Sequence[Any]) -> "MassProperties":
+        """From its 13 scalars."""
+        m, *others = scalars
+        return MassProperties(m, Vector(others[:3]), Matrix.of((others[3:6], others[6:9], others[9:12])))
 
     def about(self, point: Vector) -> Matrix:
         """Inertia about a point, the axes unchanged: I + m (d.d 1 - d d^T), d from the point to the mass centre."""

@@ -190,9 +190,6 @@ from eomgen.symbolic.expression.text import parse_equation as parse_equation
 # The fix of diff(phi, t), ddot(phi), phi(t) or pow(phi, 2), or ""
 from eomgen.symbolic.expression.text import rate_of_call as rate_of_call
 
-# The first position from here on that holds no space
-from eomgen.symbolic.expression.text import skip_space as skip_space
-
 # A Greek letter by its name ("theta"), "" of others
 from eomgen.symbolic.expression.text import spelled as spelled
 

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from typing import Any, ClassVar, overload
 
 from eomgen.frozen import dataclass
-from eomgen.symbolic.expression.formula import sqrt
+from eomgen.symbolic.expression.formula import over, sqrt
 from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.expression.rational import Fraction
 
@@ -50,6 +50,15 @@ class Vector(tuple[Any, Any, Any]):
     def length(self) -> Scalar:
         """|a|"""
         return sqrt(self @ self)
+
+    @property
+    def unit(self) -> Vector:
+        """a / |a|, exactly."""
+        square = self @ self
+        if square == 1:
+            return self
+        length = sqrt(square)
+        return Vector(over(x, length) for x in self)
 
     @property
     def largest(self) -> Any:
