@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from eomgen.symbolic.exact.book_forms import is_root_of_sum, readable_over, rooted
+from eomgen.symbolic.exact.book_forms import Rooted, is_root_of_sum, readable_over
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.exact.terms import TooLarge
 from eomgen.symbolic.expression.derivatives import gradient, tangent
@@ -30,7 +30,7 @@ def distance(s: dict[str, Scalar]) -> Scalar:
 
 def written(x: Scalar) -> tuple[str, Scalar]:
     """(text with r for the first root and v for the second symbol, the expression with its roots)."""
-    over = rooted((x,), LIMIT)
+    over = Rooted.of((x,), LIMIT)
     short = readable_over(over.expressions[0], [symbol for symbol, _ in over.roots], LIMIT)
     names = {symbol: name for (symbol, _), name in zip(over.roots, "rvw", strict=False)}
     return to_text(short, names), over.back((short,))[0]
@@ -81,7 +81,7 @@ def test_roots_of_numbers_and_squares_are_no_roots_of_sums(symbols):
     x = symbols["x"]
     assert not any(is_root_of_sum(root) for root in (sqrt(2), sqrt(x * x), x, 2))
     assert is_root_of_sum(sqrt(x * x + 1))
-    assert rooted((x * sqrt(2), 3), LIMIT).roots == ()
+    assert Rooted.of((x * sqrt(2), 3), LIMIT).roots == ()
 
 
 def test_what_takes_too_much_work_is_refused(symbols):

@@ -66,7 +66,7 @@ def test_a_planted_tolerance_is_seen(planted):
 
 BUDGETED = set(
     "normal_form equal readable readable_all collected_in common_factor cancelled simplest legible "
-    "with_squares rooted roots readable_over expanded Expansion reactions_of solution_of_balance".split()
+    "with_squares book_form roots readable_over expanded Expansion reactions_of solution_of_balance".split()
 )
 
 CALLED = re.compile(rf"\b(?:{'|'.join(sorted(BUDGETED))})\(")  # only sources with such a call are parsed

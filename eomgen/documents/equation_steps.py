@@ -49,7 +49,7 @@ from eomgen.symbolic.expression import (
     substituted,
 )
 from eomgen.symbolic.numeric import Work
-from eomgen.symbolic.print import Factor, Product, length_of, number_text, products_of, text_size
+from eomgen.symbolic.print import Product, length_of, products_of, text_size, to_text
 
 SOLVED = 3  # accelerations that are solved for by hand, at most
 SOLVED_LENGTH = 700  # characters of the equations that are solved by hand, at most
@@ -246,7 +246,7 @@ def _divided(system: System, divisor: Scalar) -> tuple[Piece, ...]:
     return tuple(words)
 
 
-def _product(graph: Graph, found: Sequence[Factor]) -> Scalar:
+def _product(graph: Graph, found: Sequence[tuple[Node, int]]) -> Scalar:
     total: Scalar = 1
     for base, e in found:
         total = total * graph.pow(base, e)
@@ -254,7 +254,7 @@ def _product(graph: Graph, found: Sequence[Factor]) -> Scalar:
 
 
 def _piece(x: Scalar) -> Piece:
-    return x if isinstance(x, Node) else number_text(x)
+    return x if isinstance(x, Node) else to_text(x)
 
 
 def closing(reader: Reader, equations: EquationsOfMotion) -> list[Statement]:

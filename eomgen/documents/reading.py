@@ -14,19 +14,7 @@ from eomgen.documents.statements import Equation, Formula, Meaning, Omitted, Sid
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics import Scope
-from eomgen.symbolic.exact import (
-    BRACKETS,
-    Rooted,
-    TooLarge,
-    book_form,
-    common_factor,
-    equal_at_random_states,
-    is_root_of_sum,
-    readable,
-    rooted,
-    short_over,
-    with_squares,
-)
+from eomgen.symbolic.exact import BRACKETS, Rooted, TooLarge, book_form, common_factor, equal_at_random_states, readable
 from eomgen.symbolic.expression import (
     SUMS,
     Fraction,
@@ -37,7 +25,6 @@ from eomgen.symbolic.expression import (
     function,
     holds_op,
     is_zero,
-    op_bits,
     order,
     parse,
     substituted,
@@ -59,7 +46,7 @@ LONGEST = 1500  # characters of one formula in print
 NESTED = 400  # characters of a formula that is not multiplied out, in print
 TRIED = 20_000  # characters: what is longer by far will not become short
 WAVES = 100  # terms of a normal form that are written shortly; more of them take long, and are long
-POLYNOMIAL = op_bits(*"symbol pi neg add sub mul div sin cos".split())
+POLYNOMIAL = tuple("symbol pi neg add sub mul div sin cos".split())
 LARGEST_DIVISOR = 120  # a number by which an equation is divided or multiplied, at most
 HALF = Fraction(1, 2)
 DIVIDED = 4000  # characters: longer formulas are not tried as one quotient
@@ -137,14 +124,9 @@ class Reader:
         """
         held = [symbol for symbol in order((x,)) if symbol in self.roots]
         try:
-            short = (
-                short_over(x, held, WAVES, self.positive) if held else book_form(x, positive=self.positive, most=WAVES)
-            )
+            short = book_form(x, positive=self.positive, most=WAVES, roots=held, squares=self.gathers)
         except TooLarge:
             return None
-        if self.gathers and not held:
-            squares = with_squares(x, Work.ENTRY, self.positive)
-            short = squares if length_of(squares) + BRACKETS < length_of(short) else short
         left_alone = held or holds_roots(x)
         return x if left_alone and length_of(x) < length_of(short) else short
 
@@ -154,7 +136,7 @@ class Reader:
 
     def with_symbols(self, scalars: Sequence[Scalar]) -> tuple[Scalar, ...]:
         """The scalars as they are, but with a symbol for each root of a sum."""
-        over = rooted(scalars, Work.ENTRY)
+        over = Rooted.of(scalars, Work.ENTRY)
         self.roots |= dict(over.roots)
         return over.expressions
 
@@ -306,7 +288,7 @@ def readable_value(reader: Reader, value: Scalar, positive: Collection[Node] = (
 
 def holds_roots(*expressions: Scalar) -> bool:
     """True where the expressions hold functions other than sines and cosines."""
-    return any(type(x) is Node and x.ops & ~POLYNOMIAL for x in expressions)
+    return any(type(x) is Node and not x.is_made_of(*POLYNOMIAL) for x in expressions)
 
 
 def length_in_print(*expressions: Scalar) -> int:
@@ -478,7 +460,11 @@ def with_roots_named(written: Written, graph: Graph, taken: Container[str], root
     written = _substituted(written, whole)
     parts = {symbol: substituted((value,), whole)[0] for symbol, value in roots.items() if symbol not in whole}
     names = {letter: map(graph.symbol, free_names(letter, taken)) for letter in "rv"}
-    return _introduced(written, parts, lambda part: next(names["r" if is_root_of_sum(parts[part]) else "v"]), _always)
+    return _introduced(written, parts, lambda part: next(names["r" if _is_root(parts[part]) else "v"]), _always)
+
+
+def _is_root(x: Scalar) -> bool:
+    return type(x) is Node and x.op == "sqrt"
 
 
 def with_coefficients_throughout(written: Written, coefficients: Mapping[Node, Scalar]) -> Written:

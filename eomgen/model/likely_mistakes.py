@@ -10,11 +10,11 @@ from itertools import pairwise
 from typing import Any
 
 from eomgen.model.catalog import SYMBOL_TABLES, Catalog, owner_of
-from eomgen.model.checks.bodies import possible
 from eomgen.model.diagnostics import Diagnostic, whereabouts
 from eomgen.model.fields import STATEMENT, Leaf, NameRule, StatementRule, WrittenEquation
 from eomgen.model.positions import DocumentPath
 from eomgen.model.sampled_laws import laws_through_samples
+from eomgen.model.shapes.base import InertiaMatrix
 from eomgen.model.units import inferred
 from eomgen.model.values import AnyNumber, in_order
 from eomgen.symbolic.expression import Expression, Fraction
@@ -150,7 +150,7 @@ def _impossible(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[D
         if not all(x.names <= _valued(catalog) for x in body.inertia):
             continue
         moments = [float(x) for e in body.inertia if (x := e.value_at(values)) is not None]
-        if len(moments) == len(body.inertia) and not possible(moments):
+        if len(moments) == len(body.inertia) and not InertiaMatrix.of_moments(*moments).is_possible():
             shown = ", ".join(f"{x:g}" for x in moments)
             what = f"no body has the inertia of '{name}': [{shown}] breaks the triangle inequality"
             fix = "a principal moment is at most the sum of the others; measured = true says that it is published data"

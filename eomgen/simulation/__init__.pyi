@@ -9,17 +9,11 @@ from eomgen.simulation.compiled_runs import FoundRuns as FoundRuns
 # Runs of one phase, from t = 0 to one end, as they are made in C
 from eomgen.simulation.compiled_runs import ManyRuns as ManyRuns
 
-# Nearness of a motion to positions in which the constraints do not determine it; None without constraints
-from eomgen.simulation.constraint_drift import nearness_of as nearness_of
-
-# Projection of states onto the constraints of a system; None where none closes
-from eomgen.simulation.constraint_drift import projection_of as projection_of
-
 # The requested instants: so many, evenly spaced; or the instants themselves, in SI or with a unit
 from eomgen.simulation.integration import instants_of as instants_of
 
-# The motion from a start, x' = rhs(t, x, p)
-from eomgen.simulation.integration import integrate as integrate
+# The motion from a start while the equations hold, put back onto their constraints
+from eomgen.simulation.integration import integrate_one_phase as integrate_one_phase
 
 # Refuses options that make no sense
 from eomgen.simulation.integration import refuse_bad_run as refuse_bad_run
@@ -65,9 +59,6 @@ from eomgen.simulation.result import Phase as Phase
 
 # A motion. One that ended early holds its results so far and the reason
 from eomgen.simulation.result import Trajectory as Trajectory
-
-# DOP853, and Radau where stability alone holds its steps short
-from eomgen.simulation.solvers import AUTO as AUTO
 
 # Accuracy of the states of a run
 from eomgen.simulation.solvers import Accuracy as Accuracy

@@ -12,8 +12,9 @@ import numpy as np
 
 from eomgen.codegen import RightHandSide
 from eomgen.errors import UsageError
+from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.model import Typed, are_several, seconds, typed_values
-from eomgen.simulation.constraint_drift import Nearness, Projection
+from eomgen.simulation.constraint_drift import Nearness, Projection, nearness_of, projection_of
 from eomgen.simulation.event_location import Events
 from eomgen.simulation.integrator import MOST_STEPS, STABILIZATIONS, Run, Stepping, measured
 from eomgen.simulation.result import Kept, Phase, Trajectory
@@ -99,6 +100,33 @@ def integrate(
         steps=run.steps,
         evaluations=run.evaluations,
         carried=run.carried,
+    )
+
+
+def integrate_one_phase(
+    rhs: RightHandSide,
+    equations: EquationsOfMotion,
+    declared: System,
+    how: Stepping,
+    x0: np.ndarray,
+    p: np.ndarray,
+    time: float,
+    samples: int | None,
+) -> Trajectory:
+    """The motion from a start while the equations hold, put back onto their constraints, carried across what is
+    singular; arguments as of `integrate`."""
+    return integrate(
+        rhs,
+        time=time,
+        x0=x0,
+        p=p,
+        method=how.method,
+        rtol=how.rtol,
+        atol=how.atol,
+        samples=samples,
+        projection=projection_of(declared, p, "numpy"),
+        nearness=nearness_of(equations, p, declared),
+        most_steps=how.most_steps,
     )
 
 

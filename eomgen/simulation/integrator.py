@@ -115,6 +115,11 @@ class Stepping:
     keeps: bool = False
     most_phases: int | None = None
 
+    @staticmethod
+    def fine(most_steps: int) -> Stepping:
+        """Fine tolerances: of motions whose instants are then sought in closed form."""
+        return Stepping(AUTO, tolerances.FINE_RUN, tolerances.FINE_RUN, most_steps)
+
     def of_one_step(self) -> Stepping:
         """The tolerances of a whole run cut down to one step's: errors of many steps add up."""
         step: Stepping = with_fields(self, rtol=max(SHARE * self.rtol, tolerances.LEAST_RTOL), atol=SHARE * self.atol)

@@ -25,7 +25,6 @@ from eomgen.simulation.phase_model import PhaseModel
 from eomgen.simulation.phase_models import PhaseModels, one_phase
 from eomgen.simulation.phase_run import PhaseCondition, PhaseRun, ended
 from eomgen.simulation.singular import Flow, ended_where_singular, march_across
-from eomgen.simulation.solvers import AUTO
 from eomgen.symbolic.exact import roots
 from eomgen.symbolic.expression import Node, Scalar, State, depends_on
 from eomgen.symbolic.numeric import FLOAT, evaluate, tolerances
@@ -390,7 +389,7 @@ def _through(phase_run: PhaseRun, plan: Plan, edges: np.ndarray) -> DenseMotion:
 
 
 LONGEST = 1e9  # s, of a search
-FINE = Stepping(AUTO, tolerances.FINE_RUN, tolerances.FINE_RUN, 100_000)
+FINE = Stepping.fine(100_000)
 SEARCH = replace(FINE, most_steps=4000)
 FAIR = replace(
     SEARCH, rtol=tolerances.FAIR_RUN, atol=tolerances.FAIR_RUN

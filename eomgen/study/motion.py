@@ -23,17 +23,16 @@ from eomgen.mechanics.dynamics import Extent
 from eomgen.mechanics.kinematics import Located
 from eomgen.mechanics.start import ExactStart, Start
 from eomgen.model import Model, WrittenEquation
-from eomgen.simulation import AUTO, PhaseRun, Trajectory, integrate, nearness_of, projection_of
+from eomgen.simulation import FirstTime, PhaseRun, Stepping, Trajectory, integrate_one_phase
 from eomgen.study.study import Study, study_at_rest, study_of
 from eomgen.symbolic.expression import Node, Scalar, depends_on, substituted
 from eomgen.symbolic.numeric import FLOAT, evaluate, number_of, tolerances
 
 if TYPE_CHECKING:
-    from eomgen.simulation import PhaseModel, PhaseModels, PhaseStart, Stepping
+    from eomgen.simulation import PhaseModel, PhaseModels, PhaseStart
 
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.integrals import ClosedInstant
-from eomgen.simulation import FirstTime
 from eomgen.symbolic.expression import State
 from eomgen.symbolic.numeric import transplanted
 
@@ -410,9 +409,7 @@ class MotionFromStart:
     @property
     def stepping(self) -> Stepping:
         """Fine tolerances: instants of the motion are then sought in closed form."""
-        from eomgen.simulation import Stepping
-
-        return Stepping(AUTO, tolerances.FINE_RUN, tolerances.FINE_RUN, MOST_STEPS)
+        return Stepping.fine(MOST_STEPS)
 
     @cached_property
     def goes_through_phases(self) -> bool:
@@ -559,19 +556,8 @@ class MotionFromStart:
         phase, p = self.phase, self.p
         system, symbols = phase.system, phase.system.symbols
         x0 = np.array([self.numbers[node] for node in symbols.x])
-        run = integrate(
-            RightHandSide.of(Program.right_hand_side(phase.explicit_while_sliding), "numpy"),
-            time=time,
-            x0=x0,
-            p=p,
-            method=AUTO,
-            rtol=tolerances.FINE_RUN,
-            atol=tolerances.FINE_RUN,
-            samples=samples,
-            projection=projection_of(system, p, "numpy"),
-            nearness=nearness_of(phase.equations, p, system),
-            most_steps=steps,
-        )
+        rhs = RightHandSide.of(Program.right_hand_side(phase.explicit_while_sliding), "numpy")
+        run = integrate_one_phase(rhs, phase.equations, system, Stepping.fine(steps), x0, p, time, samples)
         if not run.ok:
             raise RunFailed(f"the run does not get there: {run.message}", fix="choose an earlier instant")
         return run

@@ -12,15 +12,6 @@ from eomgen.symbolic.exact.book_forms import Rooted as Rooted
 # x as the author of a textbook prints it; x itself where that takes more than `limit` products of terms
 from eomgen.symbolic.exact.book_forms import book_form as book_form
 
-# True for sqrt(a + b), not for sqrt(2) and sqrt(x^2)
-from eomgen.symbolic.exact.book_forms import is_root_of_sum as is_root_of_sum
-
-# The expressions with a symbol for each square root r of a sum in them, and for each rate (...)/r
-from eomgen.symbolic.exact.book_forms import rooted as rooted
-
-# x multiplied out but for what is divided by the symbols `roots`, where that has few terms
-from eomgen.symbolic.exact.book_forms import short_over as short_over
-
 # Groups that need one another, each after the groups that it needs (Tarjan's strongly connected components)
 from eomgen.symbolic.exact.cramer import components as components
 
@@ -130,9 +121,6 @@ from eomgen.symbolic.exact.solving import vanishes as vanishes
 
 # marks that a sum may be longer in factors: (M + m)*g is M*g + m*g
 from eomgen.symbolic.exact.sums import BRACKETS as BRACKETS
-
-# x with the parts that are squares of sums, of one product of parameters each, as squares
-from eomgen.symbolic.exact.sums import with_squares as with_squares
 
 # The work or size needed is beyond its limit
 from eomgen.symbolic.exact.terms import TooLarge as TooLarge

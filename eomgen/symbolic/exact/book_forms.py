@@ -18,7 +18,7 @@ from eomgen.frozen import dataclass
 from eomgen.symbolic.exact.expansion import Expansion, expanded
 from eomgen.symbolic.exact.normal_forms import in_whole_numbers, normal_form, quotients, readable, rebuilt_as_written
 from eomgen.symbolic.exact.quotient import by_parameters, in_half_angles, reduced
-from eomgen.symbolic.exact.sums import LARGEST_RATIO, MOST_NESTED, CollectedSums, SumParts
+from eomgen.symbolic.exact.sums import BRACKETS, LARGEST_RATIO, MOST_NESTED, CollectedSums, SumParts, with_squares
 from eomgen.symbolic.exact.terms import (
     Key,
     Monomial,
@@ -54,18 +54,36 @@ AGAIN = 3  # times that a quotient is written anew, until it stays as it is
 
 
 def book_form(
-    x: Scalar, limit: int = Work.ENTRY, positive: Collection[Node] = (), *, most: int | None = None
+    x: Scalar,
+    limit: int = Work.ENTRY,
+    positive: Collection[Node] = (),
+    *,
+    most: int | None = None,
+    roots: Sequence[Node] = (),
+    squares: bool = False,
 ) -> Scalar:
     """x as the author of a textbook prints it; x itself where that takes more than `limit` products of terms.
 
     Args:
         positive: symbols that stand for positive numbers.
         most: terms of what is written.
+        roots: symbols of `Rooted`: what is divided by them is not multiplied out.
+        squares: sums of parameters may stand before squares of sums that are left, where that is shorter.
     Raises:
         TooLarge: more than `most` terms, where that is given, or more work to count them.
     """
     if type(x) is not Node:
         return x
+    if roots:
+        if most is not None and len(normal_form(x, limit).terms) > most:
+            raise TooLarge(f"more than {most} terms")
+        return readable_over(x, roots, limit, positive)
+    short = _in_book_form(x, limit, positive, most)
+    left = with_squares(x, limit, positive) if squares else short
+    return left if length_of(left) + BRACKETS < length_of(short) else short
+
+
+def _in_book_form(x: Node, limit: int, positive: Collection[Node], most: int | None) -> Scalar:
     form, settled = _written(x, limit, positive, most=most)
     if settled or text_size(form) > LONGEST:
         return form
@@ -243,42 +261,44 @@ class Rooted:
     expressions: tuple[Scalar, ...]
     roots: tuple[tuple[Node, Scalar], ...]
 
+    @staticmethod
+    def of(expressions: Sequence[Scalar], limit: int) -> Rooted:
+        """The expressions with a symbol for each square root r of a sum in them, and for each rate (...)/r.
+
+        Args:
+            limit: products of terms for what stands under one root.
+        """
+        known: dict[Node, Scalar] = {}
+        roots: dict[Node, Scalar] = {}
+        if not any(holds_op(x, ROOT_OF_SUM) for x in expressions):
+            return Rooted(tuple(expressions), ())
+        nodes = order(expressions)
+        added = {a for node in nodes if node.op in SUMS for a in node.args}
+        candidates = {
+            node for node in _above(nodes, is_root_of_sum) & _above(nodes, is_rate) - added if node.op in ADDED
+        }
+        rates: set[Node] = set()
+        for node in nodes:
+            if is_root_of_sum(node):
+                inside = substituted((node.args[0],), known)[0]
+                value = node.graph.sqrt(_shorter(inside, readable(inside, limit)))
+            elif node in candidates and _is_over(known, node) and not _holds(rates, node):
+                rates.add(node)
+                (value,) = substituted((node,), known)
+                value = _over(value, tuple(roots), limit)
+            else:
+                continue
+            if type(value) is Node:
+                known[node] = symbol = node.graph.symbol(f"(root {value.index})")  # no name of a model has parentheses
+                roots[symbol] = value
+        return Rooted(substituted(expressions, known), tuple(roots.items()))
+
     def back(self, expressions: Sequence[Scalar]) -> tuple[Scalar, ...]:
         """The expressions with the roots themselves."""
         known: dict[Node, Scalar] = {}
         for symbol, value in self.roots:
             known[symbol] = substituted((value,), known)[0]
         return substituted(expressions, known) if known else tuple(expressions)
-
-
-def rooted(expressions: Sequence[Scalar], limit: int) -> Rooted:
-    """The expressions with a symbol for each square root r of a sum in them, and for each rate (...)/r.
-
-    Args:
-        limit: products of terms for what stands under one root.
-    """
-    known: dict[Node, Scalar] = {}
-    roots: dict[Node, Scalar] = {}
-    if not any(holds_op(x, ROOT_OF_SUM) for x in expressions):
-        return Rooted(tuple(expressions), ())
-    nodes = order(expressions)
-    added = {a for node in nodes if node.op in SUMS for a in node.args}
-    candidates = {node for node in _above(nodes, is_root_of_sum) & _above(nodes, is_rate) - added if node.op in ADDED}
-    rates: set[Node] = set()
-    for node in nodes:
-        if is_root_of_sum(node):
-            inside = substituted((node.args[0],), known)[0]
-            value = node.graph.sqrt(_shorter(inside, readable(inside, limit)))
-        elif node in candidates and _is_over(known, node) and not _holds(rates, node):
-            rates.add(node)
-            (value,) = substituted((node,), known)
-            value = _over(value, tuple(roots), limit)
-        else:
-            continue
-        if type(value) is Node:
-            known[node] = symbol = node.graph.symbol(f"(root {value.index})")  # no name of a model has parentheses
-            roots[symbol] = value
-    return Rooted(substituted(expressions, known), tuple(roots.items()))
 
 
 def _shorter(a: Scalar, b: Scalar) -> Scalar:
@@ -318,17 +338,6 @@ def _over(x: Scalar, divisors: Sequence[Node], limit: int) -> Scalar:
         return readable_over(x, divisors, limit)
     except TooLarge:
         return x
-
-
-def short_over(x: Scalar, roots: Sequence[Node], most: int, positive: Collection[Node] = ()) -> Scalar:
-    """x multiplied out but for what is divided by the symbols `roots`, where that has few terms.
-
-    Raises:
-        TooLarge: it has more than `most` terms, or takes too much work.
-    """
-    if len(normal_form(x, Work.ENTRY).terms) > most:
-        raise TooLarge(f"more than {most} terms")
-    return readable_over(x, roots, Work.ENTRY, positive)
 
 
 def readable_over(x: Scalar, roots: Sequence[Node], limit: int, positive: Collection[Node] = ()) -> Scalar:

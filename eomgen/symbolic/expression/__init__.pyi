@@ -106,9 +106,6 @@ from eomgen.symbolic.expression.node import is_zero as is_zero
 
 # a as a sum of numbers times nodes that are no sums: {node: coefficient}, None for the number
 from eomgen.symbolic.expression.node import linear_terms as linear_terms
-
-# A bit for each operation, the same in all of this process
-from eomgen.symbolic.expression.node import op_bits as op_bits
 from eomgen.symbolic.expression.numbers import Number as Number
 
 # a, a whole one as int

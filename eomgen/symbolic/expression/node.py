@@ -81,6 +81,10 @@ class Node:
         """Reconstruction of the node from a pickle, by its graph."""
         return self.graph.reduced(self)
 
+    def is_made_of(self, *ops: str) -> bool:
+        """True if no other operation than these occurs in it."""
+        return not self.ops & ~op_bits(*ops)
+
     @property
     def name(self) -> str:
         """The name of a symbol."""

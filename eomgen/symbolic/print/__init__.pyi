@@ -20,7 +20,6 @@ from eomgen.symbolic.print.latex import Setter as Setter
 
 # Plain text for LaTeX outside formulas
 from eomgen.symbolic.print.latex import latex_escaped as latex_escaped
-from eomgen.symbolic.print.layout import Factor as Factor
 
 # coefficient * (product of base ^ exponent) / (product of base ^ exponent), exponents whole and positive
 from eomgen.symbolic.print.layout import Product as Product
@@ -33,9 +32,6 @@ from eomgen.symbolic.print.layout import has_nested_quotient as has_nested_quoti
 
 # True for what is no sum, product or whole power: a symbol, pi, a function, a broken power
 from eomgen.symbolic.print.layout import is_base as is_base
-
-# c as text that is read back as c: 4, -27/2, 0.0825, 8.464e-7
-from eomgen.symbolic.print.layout import number_text as number_text
 
 # x as a sum of products, in the order of `terms`; k*(1 - l/r) rather than -k*(l/r - 1)
 from eomgen.symbolic.print.layout import products_of as products_of
