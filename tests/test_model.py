@@ -13,7 +13,6 @@ from eomgen.errors import MissingValues, ModelError
 from eomgen.model.fields import Table
 from eomgen.model.forces import Distributed, Gravity
 from eomgen.model.joints import Placed, Revolute
-from eomgen.model.likely_mistakes import unbuilt, unbuilt_constraints
 from eomgen.model.model import Model
 from eomgen.model.parts import Body, Coordinate, Output, Parameter, Piece
 from eomgen.model.reader import loads
@@ -193,7 +192,7 @@ def test_no_kind_waits_for_a_later_version():
         constraints={"s": {"kind": "pin", "points": ["rod.end"]}},
         trusses={"T": {"nodes": {"n1": [0, 0], "n2": [1, 0]}, "members": ["n1-n2"]}},
     )
-    assert unbuilt(model) == ()
+    assert model.unbuilt == ()
     bar = {"kind": "cylindrical", "axis": [0, 0, 1], "displacement": "s", "angle": "q"}
     waiting = Model(
         space="space",
@@ -201,7 +200,7 @@ def test_no_kind_waits_for_a_later_version():
         bodies={"bar": {"shape": {"kind": "rod", "mass": 1, "length": 1}, "joint": bar}},
         constraints={"g": {"kind": "guide", "point": "bar.end", "along": [1, 0, 0]}},
     )
-    assert unbuilt(waiting) == unbuilt_constraints(waiting) == ()
+    assert waiting.unbuilt == waiting.unbuilt_constraints == ()
 
 
 @each("name", ["simple_pendulum", "stewart_platform", "gerber_beam"])

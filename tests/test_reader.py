@@ -11,7 +11,7 @@ from each import each
 
 import eomgen
 from eomgen.errors import ModelError
-from eomgen.model.likely_mistakes import warnings_of
+from eomgen.model.checks.plausible import warnings_of
 from eomgen.model.reader import load, loads
 
 MODELS = sorted((Path(__file__).parents[1] / "models").rglob("*.toml"))

@@ -19,7 +19,7 @@ import eomgen
 from eomgen.cli import main
 from eomgen.codegen.build import compiler
 from eomgen.errors import ModelError, UsageError
-from eomgen.model.likely_mistakes import warnings_of
+from eomgen.model.checks.plausible import warnings_of
 from eomgen.model.replaced import Requests
 from eomgen.model.sampled_laws import samples
 from eomgen.simulation.solvers import METHODS

@@ -19,7 +19,7 @@ from eomgen.documents import rendered
 from eomgen.documents.figures import mathtext
 from eomgen.documents.latex import names_in, setter_of
 from eomgen.errors import ExpressionError, ModelError
-from eomgen.model.likely_mistakes import warnings_of
+from eomgen.model.checks.plausible import warnings_of
 from eomgen.symbolic.print.names import COMMANDS, SPACES, Symbol
 
 TOKENS = (*COMMANDS, *SPACES, *"abcXYZ019_^{}'{}__", " ", ",", "+", r"\input", "$", "%", "θ", "\t")

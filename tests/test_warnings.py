@@ -12,7 +12,7 @@ from each import each
 
 import eomgen
 from eomgen.cli import main
-from eomgen.model.likely_mistakes import warnings_of
+from eomgen.model.checks.plausible import warnings_of
 
 MODELS = sorted((Path(__file__).parent.parent / "models").rglob("*.toml"))
 PENDULUM = """

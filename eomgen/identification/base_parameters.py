@@ -289,7 +289,7 @@ def _grouped(
         values: dict[str, float] = {leader: 1.0}
         for (k, j), value in found.K.items():
             if k == i:
-                own[names[moving[j]]] = texts.get((k, j)) or number_text(value)
+                own[names[moving[j]]] = texts.get((k, j)) or coefficient_text(value)
                 values[names[moving[j]]] = float(value)
         groups.append(Group(leader, own, values))
     still = tuple(name for j, name in enumerate(names) if j not in set(moving))
@@ -378,7 +378,7 @@ def _vanishes(W: np.ndarray, by: Sequence[Any]) -> bool:
     return not terms.size or max(map(abs, terms.sum(axis=1))) <= tolerances.FOLLOWS_AT_50 * max(map(abs, terms.flat))
 
 
-def number_text(x: Any) -> str:
+def coefficient_text(x: Any) -> str:
     """A number as text: a fraction with small numerator and denominator where it surely is one, else ten digits."""
     near = _plain(x)
     return f"{float(x):.10g}" if near is None else str(near)

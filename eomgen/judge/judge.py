@@ -16,7 +16,18 @@ from eomgen.judge.balances import requests_reactions
 from eomgen.judge.case import Case
 from eomgen.judge.comparison import Comparison, excess, first_order_place, place_of, remainder
 from eomgen.judge.decision import is_zero_everywhere
-from eomgen.judge.fixes import Authored, Fixes, of_forces
+from eomgen.judge.fixes import (
+    UNDAMPED,
+    Authored,
+    Fixes,
+    Renaming,
+    is_of_kinetic_energy,
+    of_forces,
+    renamings,
+    with_constant_forces,
+    with_reactions_of_zero,
+    without_damping,
+)
 from eomgen.judge.implied import (
     Explainable,
     Instant,
@@ -37,15 +48,6 @@ from eomgen.judge.printed_answers import (
     section_at,
 )
 from eomgen.judge.reading import DERIVED, HandEquation, along_ground_axes, of_free_coordinates
-from eomgen.judge.renaming import (
-    UNDAMPED,
-    Renaming,
-    is_of_kinetic_energy,
-    renamings,
-    with_constant_forces,
-    with_reactions_of_zero,
-    without_damping,
-)
 from eomgen.judge.truth import (
     CONSTANT,
     EVERY_PIECE,

@@ -8,8 +8,8 @@ from typing import Any, TypeVar
 
 from eomgen.errors import ExpressionError, ModelError, Problem
 from eomgen.model.catalog import Catalog, diagnostics_of_one, owner_of
-from eomgen.model.checks.bodies import bodies, numbers
 from eomgen.model.checks.names import equations, formulas, missing_point, names, references, speeds
+from eomgen.model.checks.plausible import bodies, numbers
 from eomgen.model.constraints import Limit
 from eomgen.model.diagnostics import Diagnostic, nearest
 from eomgen.model.fields import Leaf, NameRule, Table, WrittenEquation, in_si

@@ -9,6 +9,7 @@ from eomgen.errors import DerivationError, EomgenError, Problem
 from eomgen.frozen import dataclass
 from eomgen.model import constraints, forces
 from eomgen.model.catalog import Catalog
+from eomgen.model.checks.plausible import warnings_of
 from eomgen.model.constraints import Constraint
 from eomgen.model.constraints.link import Members, trusses_of
 from eomgen.model.contacts import Connections
@@ -26,7 +27,6 @@ from eomgen.model.kinds import (
     Paragraphs,
     Text,
 )
-from eomgen.model.likely_mistakes import unbuilt, unbuilt_constraints, warnings_of
 from eomgen.model.making import finish
 from eomgen.model.part import Part, PartRule, SeamRule, part_schema
 from eomgen.model.parts import (
@@ -198,12 +198,16 @@ class Model(Numbers, Connections, UnitsOfNames, Part):
     @property
     def unbuilt(self) -> tuple[tuple[str, str], ...]:
         """(where, kind) of every joint, constraint, force and table that waits for a later version, in order."""
-        return unbuilt(self)
+        bodies = ((name, body.joint) for name, body in self.bodies.items() if body.joint is not None)
+        joints = ((f"bodies.{name}.joint", f"{x.kind} joint") for name, x in bodies if not x.works_in(self.space))
+        forces = ((f"forces.{name}", force.kind) for name, force in self.forces.items() if not force.works)
+        return (*joints, *self.unbuilt_constraints, *forces)
 
     @property
     def unbuilt_constraints(self) -> tuple[tuple[str, str], ...]:
         """(where, kind) of the constraints that wait for a later version: they cannot be counted."""
-        return unbuilt_constraints(self)
+        constraints = self.constraints.items()
+        return tuple((f"constraints.{name}", x.kind) for name, x in constraints if not x.works_in(self.space))
 
     @property
     def expressions(self) -> tuple[tuple[Leaf, Expression], ...]:

@@ -140,7 +140,9 @@ def _at_start(
     if not models.model.has_phases:
         return PhaseStart(t, values, Configuration(), begun=begun)
     pieces = {body: _piece_at(models, body, t, values) for body in pieces}
-    here = _decided(models, t, values, pieces, before=plain(models.model, pieces, away), ended=frozenset())
+    here = _decided(
+        models, t, values, pieces, before=plain_configuration(models.model, pieces, away), ended=frozenset()
+    )
     return replace(here, begun=begun)
 
 
@@ -154,7 +156,7 @@ def _closed_or_open(
     """((the start, coordinates and rates there), the contacts open there): none, where the values allow it."""
 
     def values(away: Sequence[str]) -> tuple[Start, dict[str, float]]:
-        return models.of(plain(models.model, pieces, away)).begun(t, parameters, start)
+        return models.of(plain_configuration(models.model, pieces, away)).begun(t, parameters, start)
 
     rebounding = {c.name for c in models.model.contacts if c.restitution is not None}
     try:
@@ -181,7 +183,7 @@ def contacts_away(models: PhaseModels, t: float, start: Mapping[str, float]) -> 
     return _closed_or_open(models, t, {}, None, start)[1]
 
 
-def plain(model: Model, pieces: Mapping[str, int], away: Sequence[str]) -> Configuration:
+def plain_configuration(model: Model, pieces: Mapping[str, int], away: Sequence[str]) -> Configuration:
     """Some contacts open, all others closed, sliding without a sense yet."""
     contacts = on_pieces(model, pieces).contacts
     return Configuration(Table({c.name: ContactMode(closed=c.name not in away) for c in contacts}), Table(pieces))
@@ -210,7 +212,7 @@ def _refuse_overlap(models: PhaseModels, t: float, values: Values) -> None:
 
 def _piece_at(models: PhaseModels, body: str, t: float, values: Values) -> int:
     """The piece on which a body is; between two of them the one into which it moves."""
-    phase = models.of(plain(models.model, {b: 0 for b in models.model.on_paths}, ()))
+    phase = models.of(plain_configuration(models.model, {b: 0 for b in models.model.on_paths}, ()))
     link, value = phase.system.motion.link(body), phase.system.scope.value
     requested = (link.s[0], link.s_rate[0], *(value(end) for _, end in bounds_of(models.model, body)[:-1]))
     s, rate, *ends = phase.functions.evaluated(np.array([t]), phase.state(values)[None, :], requested)[0]
@@ -238,7 +240,7 @@ def _decided(
             return PhaseStart(t, after, before, hit, failure=error.what)
         if found is not None:
             return PhaseStart(t, after, found, hit)
-        standing = plain(models.model, pieces, tuple(apart))
+        standing = plain_configuration(models.model, pieces, tuple(apart))
         return PhaseStart(t, after, standing, hit, failure=_jammed(standing))
 
     try:

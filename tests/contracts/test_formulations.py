@@ -22,7 +22,6 @@ from eomgen.mechanics.dynamics.formulations import ALL, Formulation
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
 from eomgen.mechanics.dynamics.tree import branches_of
 from eomgen.mechanics.kinematics.inertia import SystemInertia
-from eomgen.model.likely_mistakes import unbuilt
 from eomgen.symbolic.expression.derivatives import depends_on
 from eomgen.symbolic.expression.graph import same_number
 from eomgen.symbolic.expression.spatial import Vector
@@ -41,7 +40,7 @@ others = each("formulation", ALL[1:])
 def system_named(name: str) -> System | None:
     """A model of models/ (None: a part of it is not built yet)."""
     model = eomgen.load(MODELS[name])
-    return None if unbuilt(model) else System.of(model)
+    return None if model.unbuilt else System.of(model)
 
 
 @cache

@@ -19,7 +19,6 @@ from eomgen.documents.document import Document
 from eomgen.equations import Equations
 from eomgen.mechanics.dynamics.formulations import METHODS
 from eomgen.mechanics.dynamics.system import System
-from eomgen.model.likely_mistakes import unbuilt
 from eomgen.model.model import Model
 from eomgen.model.reader import load, loads
 from eomgen.pipeline import derive
@@ -185,7 +184,7 @@ def moving() -> tuple[Path, ...]:
     Where a force is asked for there is rest, and no motion.
     """
     known = usual_models(path for path in PATHS if "unknowns" not in declared(path))
-    return tuple(path for path in known if not unbuilt(loaded(path)))
+    return tuple(path for path in known if not loaded(path).unbuilt)
 
 
 def model_called(name: str) -> Model:

@@ -35,7 +35,7 @@ def reduced(expansion: Expansion, terms: Terms) -> tuple[Terms, Terms]:
     Raises:
         TooLarge: the expansion's limit is reached.
     """
-    numerator, denominator = fraction_of(expansion, terms)
+    numerator, denominator = over_one_denominator(expansion, terms)
     if not numerator:
         return {}, constant(1)
     if len(denominator) > 1 or any(w for _, w in denominator):
@@ -43,7 +43,7 @@ def reduced(expansion: Expansion, terms: Terms) -> tuple[Terms, Terms]:
     return numerator, denominator
 
 
-def fraction_of(expansion: Expansion, terms: Terms) -> tuple[Terms, Terms]:
+def over_one_denominator(expansion: Expansion, terms: Terms) -> tuple[Terms, Terms]:
     """(numerator, denominator) without negative powers, common factors left where they are."""
     numerator, powers = expansion.cleared(terms)
     denominator = constant(1)
@@ -188,7 +188,7 @@ def one_root(expansion: Expansion, above: Terms, below: Terms, roots: Sequence[T
     """
     spent = expansion.work
     try:
-        fractions = [fraction_of(expansion, f) for f in roots]
+        fractions = [over_one_denominator(expansion, f) for f in roots]
         ring = Polynomials([above, below, *(part for pair in fractions for part in pair)], expansion.product)
         return _Roots(expansion, ring, above, below, fractions).joined()
     except TooLarge:
