@@ -27,7 +27,7 @@ from eomgen.simulation.constraint_drift import RankLookout
 from eomgen.simulation.integration import drift_of
 from eomgen.simulation.integrator import Stepping, ended_words, reached_words
 from eomgen.simulation.many_runs import BATCHED, ManyStarts, library_of_march
-from eomgen.simulation.phase_change import contacts_away, plain
+from eomgen.simulation.phase_change import contacts_away, plain_configuration
 from eomgen.simulation.phase_model import PhaseModel
 from eomgen.simulation.phase_models import DerivedAt, PhaseModels
 from eomgen.simulation.singular import NEARNESS, vanishing_after
@@ -200,7 +200,7 @@ class _PhasedRuns:
         if not is_in_phases(models, self.how):
             return None
         away = contacts_away(models, 0.0, self.first)
-        before = plain(models.model, {}, away)
+        before = plain_configuration(models.model, {}, away)
         phase = models.of(before)
         if phase.functions.rhs.target != "c" or not len(phase.speeds):
             return None

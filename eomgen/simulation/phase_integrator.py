@@ -26,7 +26,7 @@ from eomgen.mechanics.kinematics import ContactMode
 from eomgen.model import Contact, Model, Table
 from eomgen.simulation.contacts import Configuration
 from eomgen.simulation.many_runs import march_text
-from eomgen.simulation.phase_change import plain
+from eomgen.simulation.phase_change import plain_configuration
 from eomgen.simulation.phase_model import PhaseModel
 from eomgen.simulation.phase_models import PhaseModels
 from eomgen.simulation.phase_tables import (
@@ -190,7 +190,7 @@ class PhaseIntegrator:
         model = self.models.model
         for away in ((), self.models.ends):
             try:
-                system = self.models.of(plain(model, {}, away)).declared
+                system = self.models.of(plain_configuration(model, {}, away)).declared
             except DerivationError:  # nothing can hold it
                 continue
             if tuple(x.name for x in system.symbols.x) == self.states:
@@ -356,7 +356,7 @@ class PhaseIntegrator:
         memory = 80 * width + 72 * AT_ONCE + AT_ONCE * width + 20 * MOST_EVENTS + 200 * len(phases)
         work = text.outputs + 2 * width
         memory += march_work + work + text.constants + 3 * len(text.makers) + 60 * n_slides + 2000
-        closed = plain(self.models.model, {}, ())
+        closed = plain_configuration(self.models.model, {}, ())
         words = {
             "PHASES": len(phases), "SLIDES": n_slides, "FUNCTIONS": len(text.makers), "CONSTANTS": text.constants,
             "WIDTH": width, "CONTACTS": len(self.names), "HELD": held, "ROWS": rows, "MARCH_WORK": march_work,

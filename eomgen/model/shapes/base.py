@@ -74,7 +74,7 @@ class MassProperties:
 
     @staticmethod
     def of_scalars(scalars: Sequence[Any]) -> "MassProperties":
-        """From its 13 scalars."""
+        """The mass properties of these 13 scalars."""
         m, *others = scalars
         return MassProperties(m, Vector(others[:3]), Matrix.of((others[3:6], others[6:9], others[9:12])))
 
