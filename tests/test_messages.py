@@ -50,6 +50,7 @@ HABITS = [
     ("start = 20", "value = 20", "'start'"),
     ("[parameters]", "[paramters]", "'parameters'"),
     ("[bodies.boom]", "[boddies.boom]", "'bodies'"),
+    (JOINT, JOINT.replace(" }", ', friction = "T" }'), "torque, coefficient, radius"),
 ]
 
 

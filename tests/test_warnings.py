@@ -197,6 +197,19 @@ def test_a_model_that_cannot_move_is_told(tmp_path):
         assert ("no problems found" in result.stdout) is not reported
 
 
+def test_what_rests_on_what_it_can_leave_is_not_locked(tmp_path):
+    """A bar at its stop can leave it: no word; beyond its stop it says so, at the joint that has the limits."""
+    model = tmp_path / "stopped.toml"
+    free = LOCKED.split("[constraints.far]")[0]
+    for limits, beyond in (("[0, 1]", False), ("[0.25, 1]", True)):
+        model.write_text(free.replace('angle = "phi"', f'angle = "phi", limits = {limits}'))
+        result = CliRunner().invoke(main, ["check", str(model)])
+        assert (
+            "stopped.toml:8:9: the limit 'bar_low' is passed through at the start, by 0.25" in result.stderr
+        ) is beyond
+        assert "nothing can move" not in result.stderr or beyond
+
+
 def test_a_body_that_nothing_hangs_is_told(tmp_path):
     """Beside a pendulum a rod without a joint stands in the ground: it is named; a massless frame is meant so."""
     model = tmp_path / "unhung.toml"

@@ -54,6 +54,11 @@ class Contact:
         return f"the body '{self.name}'" if self.of_joint else f"the {self.kind} '{self.name}'"
 
     @property
+    def is_passed(self) -> str:
+        """What is wrong where its gap is negative, in words."""
+        return f"{self.words} is {'too short' if self.pulls else 'passed through'} at the start"
+
+    @property
     def declared_at(self) -> str:
         """Path of its declaration: constraints.wall, bodies.bead.joint, forces.brake."""
         if self.of_force:

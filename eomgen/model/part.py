@@ -203,7 +203,9 @@ class PartRule:
             return raw
         if not isinstance(raw, Mapping):
             if not self.cls.shorthand or isinstance(raw, (list, tuple)):
-                found.append(Diagnostic(path, f"a table is needed here ({title_of(self.cls)}), not {shown(raw)}"))
+                what = f"a table is needed here ({title_of(self.cls)}), not {shown(raw)}"
+                fields = ", ".join(slot.name for slot in self.cls.slots())
+                found.append(Diagnostic(path, what, f"its fields are {fields}"))
                 return None
             return self._shorthand(raw, path, found)
         return read_part(self.cls, raw, path, found)

@@ -98,6 +98,8 @@ def located(problem: Problem, data: bytes, name: str, *, by_name: bool = False) 
     path = path if problem.where else _named(problem.what, files)
     if not path:
         return problem
+    if not files.has(path[:2]):
+        path = _brought_by(path, files)
     key = path if files.has(path) else path[:2]
     number, found = files.as_written(Diagnostic(path, problem.what, problem.fix))
     index, where = files.indices[number], files.as_written(Diagnostic(key, ""))[1].path
@@ -119,6 +121,14 @@ def _named(what: str, files: _Files) -> tuple[str, ...]:
 def warned(model: Model, data: bytes, name: str) -> tuple[Problem, ...]:
     """The warnings of a model, each at its place in the text that the model was read from."""
     return _Files.of(data, name).problems(list(model.warnings))
+
+
+def _brought_by(path: tuple[str, ...], files: _Files) -> tuple[str, ...]:
+    """The path of the part that brings another along: of bodies.arm for constraints.arm_low; else the path itself."""
+    pieces = path[1].split("_") if len(path) > 1 else []
+    names = ("_".join(pieces[:k]) for k in range(len(pieces) - 1, 0, -1))
+    owners = ((table, name) for name in names for table in ("bodies", "forces") if files.has((table, name)))
+    return next(owners, path)
 
 
 @dataclass(frozen=True)

@@ -201,10 +201,9 @@ def _refuse_overlap(models: PhaseModels, t: float, values: Values) -> None:
     contacts = {contact.name: contact for contact in models.model.contacts}
     for name, (gap, _) in models.without_contacts.gaps(t, values).items():
         if gap < -_length(models, values):
-            what = "is too short" if contacts[name].pulls else "is passed through"
             unit = models.model.constraints[name].gap_unit(models.model.bodies)
             raise DerivationError(
-                f"{contacts[name].words} {what} at the start, by {-gap:.3g} {unit}",
+                f"{contacts[name].is_passed}, by {-gap:.3g} {unit}",
                 f"constraints.{name}",
                 "change the start values",
             )

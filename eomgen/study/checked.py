@@ -12,7 +12,7 @@ from eomgen.mechanics.constraints import Freedom
 from eomgen.mechanics.dynamics import System, WellPosed, assembled_by_recursion, reported_of_nodes
 from eomgen.mechanics.free_bodies import Structure
 from eomgen.mechanics.instant import InstantKinematics
-from eomgen.mechanics.kinematics import ContactModes, Motion, Scope, SystemScene
+from eomgen.mechanics.kinematics import ContactMode, ContactModes, Motion, Scope, SystemScene
 from eomgen.mechanics.start import Branches, Start
 from eomgen.mechanics.statics import ContactsAtStart
 from eomgen.model import Model, ModelOrPath, Table, Values, model_at
@@ -74,7 +74,7 @@ class Checked:
             cautions=(
                 *_open(model, start),
                 *(_idle(model, modes) if model.coordinates else ()),
-                *_locked(model, freedom),
+                *_locked(model, freedom, modes),
                 *_unhung(model),
                 *_stiff(model, modes, freedom),
                 *_misplaced(model),
@@ -141,8 +141,10 @@ def _open(model: Model, start: LoopStart) -> tuple[Problem, ...]:
     )
 
 
-def _locked(model: Model, freedom: Freedom) -> tuple[Problem, ...]:
-    """Coordinates that are to move, and constraints that let nothing move."""
+def _locked(model: Model, freedom: Freedom, modes: ContactModes) -> tuple[Problem, ...]:
+    """Coordinates that are to move, and constraints that let nothing move; what rests on contacts can leave them."""
+    if any(c.unilateral and modes.get(c.name, ContactMode()).closed for c in model.contacts):
+        return ()
     free = [name for name, q in model.coordinates.items() if not (q.driven or q.dependent)]
     given = any(leaf.path[0] == "constraints" and "t" in x.names for leaf, x in model.expressions)
     if freedom.by_rank != 0 or not free or given:

@@ -377,7 +377,11 @@ def refuse_open_gaps(system: System, state: State) -> None:
             "give start values at which its roots and quotients have one",
         )
     size = _in_full(system, row, size, state)
-    what = f"'{row.constraint}' (row {row.number}) does not close at the start: it is open by {size:.3g}"
+    passed = [c.is_passed for c in system.scope.model.contacts if c.name == row.constraint and c.unilateral]
+    if passed and evaluate((gap,), state, fifty_digits())[0] < 0:
+        what = f"{passed[0]}, by {size:.3g}"
+    else:
+        what = f"'{row.constraint}' (row {row.number}) does not close at the start: it is open by {size:.3g}"
     raise OpenConstraints(what, f"constraints.{row.constraint}", _fix(system, gap), partial(_nearest, system, state))
 
 
