@@ -55,7 +55,7 @@ class Contact:
 
     @property
     def is_passed(self) -> str:
-        """What is wrong where its gap is negative, in words."""
+        """Sentence of a start at which its gap is negative."""
         return f"{self.words} is {'too short' if self.pulls else 'passed through'} at the start"
 
     @property
