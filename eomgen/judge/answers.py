@@ -311,6 +311,35 @@ def of_state(case: Case, written: HandEquation, kind: str) -> Verdict | None:
     return Verdict(written.given, kind, WRONG, difference=difference, causes=(cause,))
 
 
+def without_rate(case: Case, written: HandEquation, kind: str) -> Verdict | None:
+    """The verdict on an equation of a state that leaves out its rate, i = U/R of L i' + R i + k theta' = U; None: it is
+    no such: beside the rate at most one term of it is missing, or wrong.
+
+    An equation e = 0 that is linear in z is Z/s - z'/s = 0 without z', s = Z_z/e_z.
+    """
+    system, scope = case.system, case.system.scope
+    scalar = case.value(written.difference)
+    if depends_on(scalar, system.symbols.a) or truth_of(case, scalar, kind).holds is not False:
+        return None
+    for z in (z for z in scope.symbols.z if depends_on(scalar, (z,))):
+        declared = scope.names[f"{z.name}'"]
+        own, slope = derivative(scalar, z), derivative(declared, z)
+        if any(is_zero(x) or depends_on(x, system.symbols.x) for x in (own, slope)):
+            continue
+        s = over(slope, own)
+        apart = s * scalar - declared
+        zero = is_zero_everywhere(system, apart).holds
+        more = [] if zero else list(_causes_of_state(case, z, declared, apart))[:1]
+        if not zero and not more:
+            continue
+        left = over(-z.graph.symbol(f"{z.name}'"), s)
+        shown, excess_left = (short_text(x, scope.positive) for x in (left, over(apart, s) - left))
+        text = f"{shown} is missing: as it stands this holds only where {z.name} does not change"
+        cause = Cause("missing_term", text, term=shown, quantity=f"the rate of {z.name}")
+        return Verdict(written.given, kind, WRONG, difference=excess_left, causes=(cause, *more))
+    return None
+
+
 def _causes_of_state(case: Case, z: Node, declared: Scalar, apart: Scalar) -> Iterator[Cause]:
     """A term of the declared rate that is missing, or has another sign or factor; a term too much."""
     positive = case.system.scope.positive

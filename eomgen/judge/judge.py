@@ -11,7 +11,7 @@ from typing import Any
 
 from eomgen.errors import DerivationError, EomgenError, ExpressionError, MissingValues, RunFailed, UsageError
 from eomgen.frozen import dataclass
-from eomgen.judge.answers import of_output, of_state, of_unknown, of_wrong_course, requested
+from eomgen.judge.answers import of_output, of_state, of_unknown, of_wrong_course, requested, without_rate
 from eomgen.judge.balances import requests_reactions
 from eomgen.judge.case import Case
 from eomgen.judge.comparison import Comparison, excess, first_order_place, place_of, remainder
@@ -413,14 +413,17 @@ class Judge:
         if at is None and kind == "equilibrium" and not unknown:
             found = self._at_rest(written)
             if found is not None:
-                return found
+                moving = without_rate(case, written, "motion") if found.verdict == WRONG and not case.rests else None
+                return found if moving is None else moving
             kind = "motion"
         if at is not None or kind == "frequency" or (kind == "statics" and not unknown):
             return requested(case, written, kind, at)
         if unknown:
             return self._of_other_names(written, kind, unknown)
         found = self._course(written)
-        if (found := of_state(case, written, kind) if found is None else found) is not None:
+        for way in (of_state, without_rate):
+            found = way(case, written, kind) if found is None else found
+        if found is not None:
             return found
         return self._of_scalar(written, kind, case.value(written.difference))
 

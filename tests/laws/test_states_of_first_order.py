@@ -230,6 +230,21 @@ def test_an_equation_for_the_rate_of_a_state_is_judged_by_its_terms(equation, ki
     assert [(x.kind, x.term) for x in verdict.causes] == ([(kind, term)] if kind else [])
 
 
+@pytest.mark.parametrize(
+    ("equation", "causes"),
+    [
+        ("R*i = U - k*theta'", [("missing_term", "L*i'")]),
+        ("i = U/R", [("missing_term", "L*i'/R"), ("missing_term", "-k*theta'/L")]),
+        ("R*i = U + k*theta'", [("missing_term", "L*i'"), ("sign", "-k*theta'/L")]),
+    ],
+)
+def test_an_equation_of_a_state_without_its_rate_lacks_it(equation, causes):
+    """L i' + R i + k theta' = U without L i' holds only where i does not change; it is about no force."""
+    verdict = eomgen.verify(eomgen.loads(MOTOR), equation)
+    assert [(x.kind, x.term) for x in verdict.causes] == causes and not verdict
+    assert "holds only where i does not change" in verdict.causes[0].text
+
+
 SENSOR = """
 eomgen = 1
 space = "plane"
