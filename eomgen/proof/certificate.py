@@ -424,9 +424,11 @@ class _Proof:
         """Message if the stated stability is wrong; "".
 
         For one degree of freedom the motion after a displacement decides, for several the eigenvalues of da/dq of the
-        free coordinates: a positive one grows.
+        free coordinates: a positive one grows. With states of first order those of everything that moves.
         """
         kind = self.place.stability.kind
+        if self.first.system.symbols.z:
+            return self._wrong_growth(kind)
         rows = {u.name.removesuffix("'"): i for i, u in enumerate(self.first.system.symbols.u)}
         along = [q.name for q in self.place.stability.along]
         if not along or any(name not in rows for name in along):
@@ -440,6 +442,21 @@ class _Proof:
         if kind == "unstable" and largest and values.max() < -tolerances.SAME_PLACE * largest:
             return "said to be unstable, and all small motions oscillate"
         return ""
+
+    def _wrong_growth(self, kind: str) -> str:
+        """Message if the eigenvalues of x' = A x, x = (q, u, z), are not those of the stated stability; ""."""
+        symbols, nearby = self.first.system.symbols, self.nearby
+        places = (*nearby.q, *symbols.z)
+        columns = []
+        for x in (*places, *symbols.u):
+            sides = (nearby.going(nearby.state({**self._still, x: self.numbers[x] + sign * STEP})) for sign in (1, -1))
+            late, early = ([*(going.q1[q] for q in places), *going.a.values()] for going in sides)
+            columns.append([float((b - a) / (2 * STEP)) for a, b in zip(early, late, strict=True)])
+        values = np.linalg.eigvals(np.array(columns).T).real
+        least = tolerances.SAME_PLACE * abs(values).max(initial=0)
+        if kind == "stable" and values.max() > least:
+            return "said to be stable, and a small motion grows"
+        return "said to be unstable, and no small motion grows" if kind == "unstable" and values.max() < least else ""
 
     def _wrong_when_pushed(self, q: Node, row: int) -> str:
         """Message if a displacement along q is not followed by what the stated stability says; "".

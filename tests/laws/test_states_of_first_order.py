@@ -588,3 +588,29 @@ def test_a_bead_on_a_turning_hoop_rests_on_it_with_its_state():
         right = sorted(np.linalg.eigvals(A), key=lambda x: (round(x.real, 6), x.imag))
         got = sorted(found.spectrum.eigenvalues, key=lambda x: (round(x.real, 6), x.imag))
         assert got == pytest.approx(right, rel=1e-6) and found.certify().ok
+
+
+BISTABLE = """
+eomgen = 1
+space = "plane"
+parameters = { m = 1, k = 4, T = 0.3, c = 0.5 }
+coordinates.x = 0.3
+states.F = { rate = "(k*x - F)/T", about = "a force that follows late" }
+[bodies.cart]
+mass = "m"
+joint = { kind = "prismatic", axis = [1, 0], displacement = "x", force = "2*k*x - 8*x^3 - F - c*x'" }
+"""
+
+
+@pytest.mark.parametrize(("T", "kind"), [(0.3, "unstable"), (0.05, "stable")])
+def test_the_eigenvalues_of_full_order_decide_whether_rest_with_states_is_stable(T, kind):
+    """s^2 + c s + 24 x^2 - 8 + k/(T s + 1) = 0: T s^3 + (1 + T c) s^2 + (c + 4 T) s + 8 = 0 at x^2 = 1/2; at x = 0 it
+    has a positive root. What follows late makes an oscillation grow where T is long, which no potential shows."""
+    found = eomgen.statics(eomgen.loads(BISTABLE.replace("T = 0.3", f"T = {T}")))
+    places = found.entries()["equilibria"]
+    assert [round(x["coordinates"]["x"].value ** 2, 9) for x in places] == [0, 0.5, 0.5] and found.certify().ok
+    fast = [max(np.roots([T, 1 + T * 0.5, 0.5 + 4 * T, 8]).real), max(np.roots([T, 1 + T * 0.5, 0.5 - 8 * T, -4]).real)]
+    assert [
+        (x["stability"]["kind"], f"exp({y:.6g} t)" in x["stability"]["why"])
+        for x, y in zip(places, [fast[1], fast[0], fast[0]], strict=True)
+    ] == [("unstable", True), (kind, True), (kind, True)]

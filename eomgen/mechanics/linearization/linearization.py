@@ -14,7 +14,7 @@ from eomgen.errors import DerivationError, EomgenError, MissingValues, NotYet, R
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Assembly
 from eomgen.mechanics.dynamics import System, Valueless
-from eomgen.mechanics.equilibrium import StaticEquations
+from eomgen.mechanics.equilibrium import Equilibrium, StaticEquations
 from eomgen.mechanics.free_bodies import SystemFriction
 from eomgen.mechanics.kinematics import Located
 from eomgen.mechanics.linearization.reduction import (
@@ -40,6 +40,7 @@ from eomgen.mechanics.linearization.reference import (
     Choice,
     FirstOrder,
     ReferenceMotion,
+    about_place,
     at_the_start,
     choice_of,
     in_closed_form,
@@ -174,6 +175,20 @@ class SmallMotions:
             )
         reference, first = _balanced(system, about, guess, wanted)
         return _about(first, reference, wanted)
+
+
+def about_places(places: Sequence[Equilibrium]) -> Iterator[SmallMotions | DerivationError]:
+    """The small motions about equilibria of one system, or why there are none."""
+    first: FirstOrder | None = None
+    for place in places:
+        try:
+            reference = about_place(place)
+            first = FirstOrder.of(reference.system) if first is None else first
+            yield _about(first, reference, ())
+        except DerivationError as error:
+            yield error
+        except (NoValue, ZeroDivisionError):
+            yield _without_value(reference)
 
 
 def motions_beside(small: SmallMotions, wanted: Sequence[str] = ()) -> Iterator[SmallMotions | None]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
 from random import Random
@@ -13,7 +14,8 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.linearization.linearization import SmallMotions, motions_beside
+from eomgen.mechanics.equilibrium import Equilibria, Equilibrium
+from eomgen.mechanics.linearization.linearization import SmallMotions, about_places, motions_beside
 from eomgen.mechanics.linearization.reduction import LinearEquations, floats
 from eomgen.mechanics.linearization.responses import (
     StateMatrices,
@@ -67,6 +69,13 @@ class Modes:
 
     small: SmallMotions
     in_full: bool = True
+
+    @staticmethod
+    def decided(found: Equilibria) -> Equilibria:
+        """Equilibria whose stability the eigenvalues of full order decide, where states of first order move too."""
+        if not found.statics.system.symbols.z:
+            return found
+        return replace(found, found=tuple(map(_of_place, found.found, about_places(found.found))))
 
     @property
     def positive(self) -> frozenset[Node]:
@@ -505,6 +514,19 @@ def _stability(small: SmallMotions, values: Sequence[complex], modes: Sequence[M
         added = ", that of the centrifugal forces included," if small.reference.moving else ""
         return "stable", f"the potential energy{added} has a minimum (Lagrange and Dirichlet)"
     return "stable to first order", "all motions oscillate or fade; terms of higher order may decide otherwise"
+
+
+def _of_place(place: Equilibrium, small: SmallMotions | DerivationError) -> Equilibrium:
+    """An equilibrium with its stability by the eigenvalues of its small motions, where these do not leave it open."""
+    if isinstance(small, DerivationError) or not small.reference.valued:
+        return place
+    own, found, q = place.stability, Modes(small).spectrum, small.reference.system.symbols.q
+    like = f"like exp({max(x.real for x in found.eigenvalues):.6g} t)"
+    grown, faded = f"{found.why}, {like}", f"all small motions fade, the slowest {like}"
+    said = {"asymptotically stable": ("stable", faded), "unstable": ("unstable", grown)}
+    kind, why = said.get(found.stability, (own.kind, f"{own.why.rpartition('; ')[0]}; {found.why}"))
+    own = replace(own, kind=kind, why=why, along=tuple(x for x in small.numbers.coordinates if x in q))
+    return replace(place, stability=own)
 
 
 def _leads_on(small: SmallMotions, drift: np.ndarray) -> bool:

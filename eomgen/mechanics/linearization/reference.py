@@ -115,7 +115,7 @@ def place_of_rest(system: System, guess: Mapping[str, float] | None = None) -> R
     place = Equilibrium.nearest(StaticEquations.of(system), guess)
     if system.scope.model.contacts:
         place.refuse_contradicted()
-    return _place(place)
+    return about_place(place)
 
 
 def relative_rest(equations: EquationsOfMotion, guess: Mapping[str, float] | None = None) -> ReferenceMotion:
@@ -151,10 +151,11 @@ def relative_rest(equations: EquationsOfMotion, guess: Mapping[str, float] | Non
         symbols.lam,
         substituted(tuple(x for x in position_equations(system, start) if depends_on(x, own)), given),
     )
-    return _place(Equilibrium.nearest(statics, guess))
+    return about_place(Equilibrium.nearest(statics, guess))
 
 
-def _place(place: Equilibrium) -> ReferenceMotion:
+def about_place(place: Equilibrium) -> ReferenceMotion:
+    """The reference that an equilibrium is."""
     system = StaticEquations.over_rates(place.statics.system)
     symbols = system.symbols
     still: dict[Node, Scalar] = {symbols.t: 0, **dict.fromkeys(symbols.u, 0)}

@@ -39,6 +39,7 @@ from eomgen.errors import RunFailed, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.equilibrium import Equilibria, Equilibrium, RestingReactions
+from eomgen.mechanics.linearization import Modes
 from eomgen.mechanics.start import shown_numbers
 from eomgen.mechanics.statics import (
     ContactsAtStart,
@@ -295,7 +296,7 @@ def statics(
         from eomgen.results.at_rest.result import Resting
 
         _refuse_for_resting(reaction=reaction, influence=influence)
-        return Resting(model, study.equilibria)
+        return Resting(model, Modes.decided(study.equilibria))
     held, _ = study.system.with_drives_held()  # what the model drives is held where it starts
     ContactsAtStart.refuse_open(held)
     found = StaticReactions.of(held, only=reaction)
@@ -647,7 +648,9 @@ def _stability_step(found: Equilibria) -> Step:
     constraints = bool(found.statics.lam)
     law: tuple[Piece, ...] = (STIFFNESS, ", ", ALONG) if constraints else (SECOND,)
     words = prose("The second variation of the potential energy decides: ", *law, ".")
-    statements: list[Statement] = [] if found.statics.system.symbols.z else [words]
+    if found.statics.system.symbols.z:
+        words = prose("The small motions of coordinates and states together decide, by their eigenvalues.")
+    statements: list[Statement] = [words]
     for number, place in enumerate(found.found, start=1):
         statements += _verdict(number, place)
     return Step("stability", "Stability", tuple(statements))
