@@ -45,7 +45,6 @@ from eomgen.symbolic.expression import (
     is_zero,
     operations,
     order,
-    sqrt,
     substituted,
 )
 from eomgen.symbolic.numeric import Work
@@ -387,7 +386,7 @@ def friction_of(equations: EquationsOfMotion, reader: Reader) -> FrictionTerms:
     statements = [*map(Formula, definitions)]
     for contact, frictions in zip(letters.contacts, letters.frictions, strict=True):
         normal = letters.symbols[contact.component]
-        if contact.normals:
+        if contact.ends:
             shown_force, formula = _of_round(reader, letters, contact, senses)
             definitions += [] if isinstance(shown_force, Omitted) else [(normal, shown_force)]
             statements.append(formula)
@@ -396,7 +395,7 @@ def friction_of(equations: EquationsOfMotion, reader: Reader) -> FrictionTerms:
             definitions.append((normal, value))
             statements += [Formula((normal, value)), *_along(reader, letters, contact, frictions, senses)]
             statements += _of_rope(system, contact, (normal, *frictions), senses)
-        row = contact.along if contact.normals else substituted(contact.force, senses)
+        row = contact.along if contact.ends else substituted(contact.force, senses)
         forces = [total + share * normal for total, share in zip(forces, row, strict=True)]
     step = Step("friction", "Friction", (prose(WORDS), *statements, *_uniqueness(system)))
     return FrictionTerms(
@@ -431,8 +430,7 @@ def _of_round(
 ) -> tuple[Scalar | Omitted, Formula]:
     """(the friction of bilateral contacts, that as a formula: F = factor sqrt(N_1^2 + N_2^2))."""
     factor, force = substituted((contact.factor, letters.balance.given[contact.component]), senses)
-    parts = [letters.symbols[j] for j in contact.normals]
-    size = function("abs", parts[0]) if len(parts) == 1 else sqrt(sum((N * N for N in parts), start=0))
+    size = contact.load(letters.symbols)
     shown = reader.shown(force)
     return shown, Formula((letters.symbols[contact.component], readable_value(reader, factor) * size, shown))
 

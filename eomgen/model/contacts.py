@@ -81,6 +81,11 @@ class Contact:
         return self.friction.grip if isinstance(self.friction, JointFriction) else self.mu
 
     @property
+    def guide(self) -> Expression | None:
+        """Length of the guide whose ends carry its load; None of all else."""
+        return self.friction.guide if isinstance(self.friction, JointFriction) else None
+
+    @property
     def dry(self) -> bool:
         """True if it can stick."""
         return self.mu is not None or self.size is not None

@@ -273,6 +273,12 @@ class JointFriction(Part):
         return self._of_load(self._coefficient)
 
     @property
+    def guide(self) -> Expression | None:
+        """Length of a guide that carries force and couple at its two ends; None: the force alone counts, once."""
+        found: Expression | None = getattr(self, "length", None)
+        return found
+
+    @property
     def grip(self) -> Expression | None:
         """The largest friction at rest: all of it, or that of a unit of the joint's force."""
         if self.static is None:
@@ -298,6 +304,11 @@ class JointFriction(Part):
         if "radius" in fields and (self._coefficient is None) != (getattr(self, "radius", None) is None):
             what = f"'coefficient' and 'radius' of the friction of the joint of '{path[1]}' go together"
             yield Diagnostic(path, what, "coefficient = 0.1, radius = 0.01: the friction torque is mu r |R|")
+        if self.guide is not None and self._coefficient is None:
+            what = f"the friction of the joint of '{path[1]}' has a 'length' and no 'coefficient'"
+            yield Diagnostic(
+                (*path, "length"), what, "a guide has a length where its friction goes by its load", key=True
+            )
         if self.smooth is not None and self.static is not None:
             what = "smooth friction has no 'static': it never rests"
             yield Diagnostic((*path, "static"), what, "leave out one of the two", key=True)
@@ -386,15 +397,22 @@ class PushFriction(JointFriction):
 class SlideFriction(PushFriction):
     """Dry friction of a slide: of a given force, or mu |N| of the force N across it.
 
+    With a `length` L it is that of a guide which touches at both ends, L/2 before and behind the joint's point of the
+    body: force N across and couple M across are two forces N/2 +- M x n/L, n along the slide, in the plane N/2 +- M/L,
+    and friction is mu times the sum of their sizes. A drawer that is pushed at an offset e jams when 2 mu e/L >= 1.
+    The couple about the slide itself does not count.
+
     Args:
         force: F while it slides [N].
         coefficient: mu, in place of `force`.
+        length: L of the guide, with `coefficient`; None: N alone counts [m].
         static: the largest at rest, a force or a coefficient as the other (None: the same).
         smooth: v of - F tanh(s'/v), at which tanh reaches 76 %; None: it sticks and slips [m/s].
     """
 
     force: ForceSize | None = None
     coefficient: Friction | None = None
+    length: Length | None = None
     static: (
         Annotated[Expression, FormulaRule(None, "nonnegative", like=("force", "coefficient"), scope=MOTION)] | None
     ) = None

@@ -139,12 +139,11 @@ class _Seen:
         if contact.size is not None:
             return np.zeros((0, len(self.track[0])))
         labels = {c.label for c in self.model.reactions.components if c.owner == contact.body}
+        if contact.guide is not None or "n 1" in labels:
+            return self._at_ends(contact)
         if "wrench 1" in labels:
             return self._on_flanks(contact)
-        if "n 1" in labels:
-            return self._across(contact)
-        across = ("x", "y", "z") if contact.of_joint else ()
-        return self._forces(contact, ("n", "n 1", "n 2", "tension", "couple", *across))
+        return self._forces(contact, ("n", "n 1", "n 2", "tension", "couple", *("xyz" if contact.of_joint else "")))
 
     def _on_flanks(self, contact: Contact) -> np.ndarray:
         """The force of a thread's flanks as it is felt along the axis, 1 x n: all of R along it, less what friction
@@ -157,16 +156,24 @@ class _Seen:
         F = self._forces(contact, ("friction",))[0] if self.model.watch.mode(contact).sense == 0 else 0.0
         return np.asarray((np.sum(R * axis, axis=0) - F * h / (r * r + h * h))[None, :])
 
-    def _across(self, contact: Contact) -> np.ndarray:
-        """The size of the force of a slide or path in space across its way, 1 x n: R less its part along."""
-        link = self.model.system.motion.link(contact.body)
-        way = np.array([self._along(x) for x in link.pose.R @ link.S[contact.variable][1]])
-        names, found = self._columns
-        R = found[:, [names.index(f"reaction_{axis}({contact.body})") for axis in "xyz"]].T
-        across = np.cross(R, way / np.linalg.norm(way, axis=0), axis=0)
-        if np.isnan(across).all():
+    def _at_ends(self, contact: Contact) -> np.ndarray:
+        """Load of a slide or path across its way, 1 x n: |F|, of a guide |F/2 + M x n/L| + |F/2 - M x n/L|."""
+        columns = dict(zip(self._columns[0], self._columns[1].T, strict=True))
+        plane = self.model.system.scope.model.space == "plane"
+        labels = (["n"], ["couple"]) if plane else ([*"xyz"], ["couple_x", "couple_y", "couple_z"])
+        none = np.zeros(len(self.track[0]))  # what is not reported is not carried
+        F, M = (np.array([columns.get(f"reaction_{x}({contact.body})", none) for x in each]) for each in labels)
+        if not plane:  # both turned about the way by a quarter
+            link = self.model.system.motion.link(contact.body)
+            way = np.array([self._along(x) for x in link.pose.R @ link.S[contact.variable][1]])
+            n = way / np.linalg.norm(way, axis=0)
+            F, M = np.cross(F, n, axis=0), np.cross(n, np.cross(M, n, axis=0), axis=0)
+        if np.isnan(F).all():
             raise NoValue("its force has no single value")
-        return np.asarray(np.linalg.norm(across, axis=0)[None, :])
+        if contact.guide is None:
+            return np.asarray([np.linalg.norm(F, axis=0)])
+        F, M = F / 2, M / self._along(self.model.system.scope.value(contact.guide))
+        return np.asarray([np.linalg.norm(F + M, axis=0) + np.linalg.norm(F - M, axis=0)])
 
     def _forces(self, contact: Contact, labels: tuple[str, ...]) -> np.ndarray:
         """Components of a contact's force, k x n; nan where it has no single value."""

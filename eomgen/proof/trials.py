@@ -6,7 +6,7 @@ Every check is made at the model's own start, then in each piece of its piecewis
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from functools import cached_property
 from random import Random
@@ -293,7 +293,8 @@ class Trials:
     def friction(self) -> Check:
         """Friction brakes: factor * v < 0 for a contact that pushes, v its sliding velocity.
 
-        That of a bilateral contact is F = factor sqrt(N_1^2 + N_2^2), N_1 and N_2 those of the free bodies.
+        That of a bilateral contact is F = factor P, P = sqrt(N_1^2 + N_2^2), N_1 and N_2 those of the free bodies, of
+        a guide with a length the sum of those at its ends.
         """
         laws = _laws_of_round(self.equations.system) if SystemFriction(self.equations.system).push_sizes() else []
 
@@ -350,9 +351,11 @@ class Trials:
         yield from (found,) if found.status == "fails" else ()
 
     def _holds(self, law: tuple[Scalar, ...], state: State) -> bool:
-        """F = factor sqrt(N_1^2 + N_2^2) with the accelerations of the equations of motion."""
-        F, factor, *N = map(float, evaluate(law, self._moving(state), fifty_digits()))
-        return math.isclose(F, factor * math.hypot(*N), rel_tol=tolerances.COMPUTED, abs_tol=tolerances.COMPUTED)
+        """F = factor (|N/2 + D/L| + |N/2 - D/L|) with the accelerations of the equations of motion."""
+        F, factor, L, *parts = map(float, evaluate(law, self._moving(state), fifty_digits()))
+        pairs = list(zip(parts[::2], parts[1::2], strict=True))
+        P = sum(math.hypot(*(N / 2 + sign * D / L for N, D in pairs)) for sign in (1, -1))
+        return math.isclose(F, factor * P, rel_tol=tolerances.COMPUTED, abs_tol=tolerances.COMPUTED)
 
     def tensors(self) -> Iterable[Check]:
         """n . I n is the declared [xx, yy, zz, xy, yz, zx] times the products of n; none where none is declared."""
@@ -531,10 +534,31 @@ def _columns(equations: EquationsOfMotion) -> Iterable[Sequence[Scalar]]:
 
 
 def _laws_of_round(system: System) -> list[tuple[str, tuple[Scalar, ...]]]:
-    """(contact, (F, factor, N_1, N_2)) of every bilateral contact with friction."""
+    """(contact, (F, factor, L, N_1, D_1, N_2, D_2, ...)) of every bilateral contact with friction."""
     reactions = Reactions.of(system)
-    rounds = [contact for contact in SystemFriction(system).contacts(reactions.components) if contact.normals]
-    return [(r.name, (reactions.value(r.component), r.factor, *map(reactions.value, r.normals))) for r in rounds]
+    rounds = [contact for contact in SystemFriction(system).contacts(reactions.components) if contact.ends]
+    pressed = [_at_ends(reactions, r.name) or (1, *_of_one_force(reactions, r.ends)) for r in rounds]
+    return [(r.name, (reactions.value(r.component), r.factor, *each)) for r, each in zip(rounds, pressed, strict=True)]
+
+
+def _at_ends(reactions: Reactions, name: str) -> tuple[Scalar, ...]:
+    """(L, N_1, D_1, ...) of a guide with a length L, N = n x (R x n) of all the force R of its joint, D = M x n of all
+    its couple M, n along it, in the ground's axes; () of all else."""
+    motion, value = reactions.balance.system.motion, reactions.balance.system.scope.value
+    link = motion.link(name) if name in motion.index else None
+    for k, _, law in () if link is None or link.joint is None else link.joint.frictions:
+        if link is not None and law.guide is not None:
+            n = link.pose.R @ link.S[k][1]
+            N, D = n.cross(reactions.force(name).cross(n)), reactions.couple(name).cross(n)
+            return (value(law.guide), *(x for pair in zip(N, D, strict=True) for x in pair))
+    return ()
+
+
+def _of_one_force(reactions: Reactions, ends: Sequence[Sequence[Sequence[tuple[int, Scalar]]]]) -> Iterator[Scalar]:
+    """N_1, 0, N_2, 0, ... of a contact that one force presses."""
+    ((*parts,),) = ends
+    for ((j, _),) in parts:
+        yield from (reactions.value(j), 0)
 
 
 def _difference(name: str, a: Any, b: Any, tolerance: float) -> str:

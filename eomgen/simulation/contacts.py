@@ -206,11 +206,10 @@ class ContactEvents:
         if contact.size is not None:
             return []
         if contact.of_joint:
-            across = self.reactions.of_joint(contact.body)
-            found = [(self.reactions.value(j), self.reactions.components[j].name) for j in across]
-        else:
-            mine = [r for r in self.system.constraints.rows if r.constraint == contact.name]
-            found = [self._reaction(r) for r in mine if r.component.partition(" ")[0] in PRESSING]
+            load = self.reactions.load(contact.body)
+            return [(_size(load), "") if contact.round else (load, f"reaction_n({contact.body})")]
+        mine = [r for r in self.system.constraints.rows if r.constraint == contact.name]
+        found = [self._reaction(r) for r in mine if r.component.partition(" ")[0] in PRESSING]
         return [_resultant(found)] if contact.round else found
 
     def _reaction(self, row: Row) -> tuple[Scalar, str]:

@@ -104,8 +104,10 @@ class WithoutContacts:
         """
         least = tolerances.COMPUTED * max(map(abs, impulses.values()), default=0.0)
         for body, part in self.system.scope.model.bodies.items():
-            if part.joint is not None and any(law.coulomb is not None for _, _, law in part.joint.frictions):
-                pressed = [impulses.get(f"impulse_{k}({body})") for k in ("x", "y", "z", "n")]
+            laws = [law for _, _, law in part.joint.frictions] if part.joint is not None else []
+            if part.joint is not None and any(law.coulomb is not None for law in laws):
+                turning = ("couple", "couple_x", "couple_y", "couple_z") if any(law.guide for law in laws) else ()
+                pressed = [impulses.get(f"impulse_{k}({body})") for k in ("x", "y", "z", "n", *turning)]
                 known = [x for x in pressed if x is not None]
                 if part.joint.kind == "screw" or not known or max(map(abs, known)) > least:
                     what = f"the friction of '{body}' goes by the force in its joint: an impulse there would rub too"

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, partial, reduce
+from operator import add, sub
 from typing import Any
 
 from eomgen.errors import DerivationError, ModelError
@@ -28,9 +29,12 @@ from eomgen.mechanics.free_bodies.solution import (
 )
 from eomgen.mechanics.free_bodies.wrenches import (
     Component,
+    Ends,
+    ends_of_round,
     is_of_whole_force,
     joint_friction,
-    normals_of_round,
+    load_of,
+    size_of_parts,
     sliding_friction,
 )
 from eomgen.symbolic.exact import LinearSystem, Solution, ValuesAt, components, cramer
@@ -57,8 +61,8 @@ from eomgen.symbolic.numeric import has_pieces, tolerances
 #
 # N_r of a constraint row is its multiplier; of one that only reacts it follows from the equilibrium of the bodies
 # across what the coordinates allow, friction a load of it: N_r = n_r + m_r a + sum k_rs N_s. A bilateral contact on a
-# line has |N_r| = sqrt(N_1^2 + N_2^2), in which the equations are not linear (see `round_contacts`). What comes out
-# is friction as a generalized force of q, u and t.
+# line has |N_r| = sqrt(N_1^2 + N_2^2), a guide the sum of those of its ends, in which the equations are not linear (see
+# `round_contacts`). What comes out is friction as a generalized force of q, u and t.
 
 
 @dataclass(frozen=True)
@@ -71,19 +75,24 @@ class FrictionContact:
             bilateral contact that of its friction.
         along: generalized force for a unit of friction, dv/du.
         factor: the friction along the contact's tangent for a unit of N, or of |N|, for instance -mu sign(v).
-        normals: of a bilateral contact the indices of its normal reactions.
+        ends: of a bilateral contact the forces by which it rubs, as combinations of the components.
     """
 
     name: str
     component: int
     along: ScalarRow
     factor: Scalar
-    normals: tuple[int, ...] = ()
+    ends: Ends = ()
 
     @property
     def force(self) -> ScalarRow:
         """Generalized force for a unit of N, or of |N|."""
         return tuple(self.factor * d for d in self.along)
+
+    def load(self, components: Sequence[Scalar]) -> Scalar:
+        """The sum of the sizes of its forces, of the values of all components."""
+        each = ([sum((k * components[j] for j, k in part), start=0) for part in parts] for parts in self.ends)
+        return sum(map(size_of_parts, each), start=0)
 
 
 def equations_of_motion(system: System) -> EquationsOfMotion:
@@ -156,7 +165,7 @@ class SystemFriction:
             return {}
         solved = _WithFriction(assembled_by_recursion(self.system))
         pairs = zip(solved.found, solved.normals, strict=True)
-        return {contact.name: N for contact, N in pairs if contact.normals}
+        return {contact.name: N for contact, N in pairs if contact.ends}
 
     def feedback(self) -> dict[str, dict[str, Scalar]]:
         """D_rs: how much the force on which the friction of r depends grows with |N| of s; {} without such friction.
@@ -194,8 +203,9 @@ class SystemFriction:
             if not component.frictional:
                 continue
             factor, sliding = sliding_friction(self.system, component)
-            normals = () if component.bilateral_friction is None else normals_of_round(components, component)
-            found.append(FrictionContact(component.owner, j, gradient(sliding, u), factor, normals))
+            one_way = component.bilateral_friction is None
+            ends = () if one_way else ends_of_round(self.system.motion, components, component)
+            found.append(FrictionContact(component.owner, j, gradient(sliding, u), factor, ends))
         return found
 
     @property
@@ -224,7 +234,7 @@ class _WithFriction:
         """N of every contact with friction, or |N|."""
         single = iter(substituted(self._values[len(self._values) - len(self._single) :], self._sizes))
         return tuple(
-            self._sizes[self._symbols[contact.name]] if contact.normals else next(single) for contact in self.found
+            self._sizes[self._symbols[contact.name]] if contact.ends else next(single) for contact in self.found
         )
 
     @cached_property
@@ -233,7 +243,7 @@ class _WithFriction:
 
     @property
     def _single(self) -> list[FrictionContact]:
-        return [contact for contact in self.found if not contact.normals]
+        return [contact for contact in self.found if not contact.ends]
 
     @property
     def _symbols(self) -> dict[str, Node]:
@@ -262,29 +272,34 @@ class _WithFriction:
 
     @property
     def _pairs(self) -> dict[Node, EqualPushes]:
-        """The components of N of each bilateral contact, linear in |N| of all, by the symbol of its |N|."""
+        """The forces N of each bilateral contact, linear in |N| of all, by the symbol of its |N|."""
         known = dict(zip(self.equations.symbols.a, self._values, strict=False)) | dict(
             zip(self._normals.values(), self._values[len(self._values) - len(self._single) :], strict=True)
         )
         return {
-            self._symbols[contact.name]: tuple(self._component(contact.name, j, known) for j in contact.normals)
+            self._symbols[contact.name]: tuple(
+                tuple(sum((k * self._component(contact.name, j, known) for j, k in part), start=0) for part in end)
+                for end in contact.ends
+            )
             for contact in self.found
-            if contact.normals
+            if contact.ends
         }
 
     def _values_at_a_state(self, pairs: Mapping[Node, EqualPushes]) -> ValuesAt:
-        entries = [N for pair in pairs.values() for N in pair]
+        entries = [N for ends in pairs.values() for parts in ends for N in parts]
         found: ValuesAt = values_at_a_state(self.equations.system, substituted(entries, dict.fromkeys(pairs, 0)))
         return found
 
     @property
     def feedback(self) -> dict[str, dict[str, Scalar]]:
-        """D_rs = |dN_r/dP_s|, by the names of the contacts."""
+        """D_rs = |dN_r/dP_s|, of a guide the sum over its ends, by the names of the contacts."""
         pairs = self._pairs
         names = {symbol: name for name, symbol in self._symbols.items()}
         G = _slopes(pairs, tuple(pairs), self._values_at_a_state(pairs))
         return {
-            names[r]: {names[s]: sqrt(inner(g, g)) for s, g in zip(pairs, row, strict=True)}
+            names[r]: {
+                names[s]: sum((sqrt(inner(g, g)) for g in ends), start=0) for s, ends in zip(pairs, row, strict=True)
+            }
             for r, row in zip(pairs, G, strict=True)
         }
 
@@ -356,7 +371,7 @@ class _WithFriction:
         """The equations with the friction of bilateral contacts, |N| left open, in the forcing."""
         forcing = self.equations.forcing
         for contact in self.found:
-            if contact.normals:
+            if contact.ends:
                 size = self._symbols[contact.name]
                 forcing = tuple(b + force * size for b, force in zip(forcing, contact.force, strict=True))
         return replace(self.equations, forcing=forcing)
@@ -410,26 +425,29 @@ def _solved(system: System, rows: list[dict[int, Scalar]], right: list[Scalar]) 
 
 
 # -------- round contacts --------------------------------------------------------------------------------------
-# Normal reactions linear in the frictions -> |N| of contacts that hold on all sides of a line in space.
+# Normal reactions linear in the frictions -> |N| of contacts that hold on all sides of a line in space, or at two ends.
 #
-#     N_r = n_r + sum over s of G_rs P_s,   P_r = |N_r| = sqrt(N_r1^2 + N_r2^2)
+#     N_re = n_re + sum over s of G_res P_s,   P_r = sum over its ends of |N_re|,   |N| = sqrt(N_1^2 + N_2^2)
 #
-# A contact that no other one feeds back on has a quadratic equation, with one positive root as long as |G_rr| < 1,
-# beyond which rigid bodies may jam: P = (n.g + sqrt(1 - g^2) sqrt(n^2 + (n.g)^2/(1 - g^2)))/(1 - g^2), without a
-# value there. Contacts that press one another are solved together by Newton's steps, as many as leave rounding alone;
-# what they do not reach has no value.
+# All have one end but a guide with a length. A contact that no other one feeds back on has a quadratic equation, with
+# one positive root as long as |G_rr| < 1, beyond which rigid bodies may jam:
+# P = (n.g + sqrt(1 - g^2) sqrt(n^2 + (n.g)^2/(1 - g^2)))/(1 - g^2), without a value there. Of a guide in the plane
+# abs(N_1) + abs(N_2) is the larger of abs(N_1 + N_2) and abs(N_1 - N_2), each of which has one such root. Contacts that
+# press one another, and guides in space, are solved by Newton's steps, as many as leave rounding alone; what they do
+# not reach has no value.
 
 
 STEPS = 6  # of Newton's method; each doubles the number of right digits
 REACHED = Fraction(1, 10**9)  # of all |N|, by which one may be off; what converges is off by rounding
 LEAST = Fraction(1, 10**30)  # an N below it is none [N]
 
-EqualPushes = tuple[Scalar, ...]
+Parts = tuple[Scalar, ...]  # of one force
+EqualPushes = tuple[Parts, ...]  # the forces of one contact
 
 
 @dataclass(frozen=True)
 class _Pressed:
-    """Contacts that press one another: N_r = n_r + sum G_rs P_s."""
+    """Contacts that press one another: N_re = n_re + sum G_res P_s."""
 
     n: tuple[EqualPushes, ...]
     G: tuple[tuple[EqualPushes, ...], ...]
@@ -442,13 +460,14 @@ def sizes(pairs: Mapping[Node, EqualPushes], values: ValuesAt) -> dict[Node, Sca
     """The value of each |N|, by its symbol.
 
     Args:
-        pairs: (N_1, N_2) of each contact, linear in the symbols of all.
+        pairs: the forces of each contact, linear in the symbols of all.
         values: of scalars at one generic state, in an arithmetic of many digits.
     """
     symbols = tuple(pairs)
-    n = [substituted(pair, dict.fromkeys(symbols, 0)) for pair in pairs.values()]
+    none = dict.fromkeys(symbols, 0)
+    n = [tuple(substituted(parts, none) for parts in ends) for ends in pairs.values()]
     G = _slopes(pairs, symbols, values)
-    needs = [[s for s, g in enumerate(row) if not all(map(is_zero, g))] for row in G]
+    needs = [[s for s, g in enumerate(row) if not _vanish(g)] for row in G]
     found: dict[int, Scalar] = {}
     for group in components(needs):
         given = tuple(_carried(n[r], ((G[r][s], P) for s, P in found.items())) for r in group)
@@ -459,21 +478,44 @@ def sizes(pairs: Mapping[Node, EqualPushes], values: ValuesAt) -> dict[Node, Sca
 
 def _slopes(pairs: Mapping[Node, EqualPushes], symbols: tuple[Node, ...], values: ValuesAt) -> list[list[EqualPushes]]:
     """G_rs, what vanishes at a generic state left out."""
-    rows = [[gradient(N, symbols) for N in pair] for pair in pairs.values()]
-    flat = [abs(x) for x in values([g for row in rows for slopes in row for g in slopes])]
+    rows = [[[gradient(N, symbols) for N in parts] for parts in ends] for ends in pairs.values()]
+    flat = [abs(x) for x in values([g for ends in rows for parts in ends for slopes in parts for g in slopes])]
     least, sizes = tolerances.ZERO_AT_50 * max(flat, default=0), iter(flat)
-    kept = [[[g if next(sizes) > least else 0 for g in slopes] for slopes in row] for row in rows]
-    return [list(zip(*row, strict=True)) for row in kept]
+    kept = [
+        [[[g if next(sizes) > least else 0 for g in slopes] for slopes in parts] for parts in ends] for ends in rows
+    ]
+    return [
+        [tuple(tuple(slopes[s] for slopes in parts) for parts in ends) for s in range(len(symbols))] for ends in kept
+    ]
+
+
+def _vanish(g: EqualPushes) -> bool:
+    return all(is_zero(x) for parts in g for x in parts)
 
 
 def _carried(n: EqualPushes, shares: Any) -> EqualPushes:
     """n + sum g P"""
     for g, P in shares:
-        n = tuple(x if is_zero(y) else x + y * P for x, y in zip(n, g, strict=True))
+        n = tuple(
+            tuple(x if is_zero(y) else x + y * P for x, y in zip(*parts, strict=True))
+            for parts in zip(n, g, strict=True)
+        )
     return n
 
 
 def _alone(n: EqualPushes, g: EqualPushes) -> Scalar:
+    """P = sum |n_e + g_e P|, of two ends the larger of |N_1 + N_2| and |N_1 - N_2|: in the plane that is P, in space
+    it is below P; no value where sum |g_e| >= 1."""
+    if len(n) == 1:
+        return _of_one(n[0], g[0])
+    if _vanish(g):
+        return load_of(n)
+    ways = [[tuple(map(op, *x)) for x in (n, g)] for op in (add, sub)]
+    pushed = [_of_one(*way) for way in ways if not _vanish(tuple(way))]
+    return reduce(partial(function, "max"), pushed)
+
+
+def _of_one(n: Parts, g: Parts) -> Scalar:
     """P = |n + g P|; no value where |g| >= 1."""
     square, along, rest = inner(n, n), inner(n, g), 1 - inner(g, g)
     if is_zero(along):
@@ -482,19 +524,29 @@ def _alone(n: EqualPushes, g: EqualPushes) -> Scalar:
 
 
 def _together(pressed: _Pressed) -> list[Scalar]:
-    """P_r = |n_r + sum G_rs P_s|, by Newton's method from the roots of each alone."""
+    """P_r = sum |n_re + sum G_res P_s|, by Newton's method from the roots of each alone."""
     each = range(len(pressed.n))
     P = [_alone(pressed.n[r], pressed.G[r][r]) for r in each]
-    if len(P) == 1:
+    if len(P) == 1 and _is_exact(pressed.n[0], pressed.G[0][0]):
         return P
     for _ in range(STEPS):
         N = pressed.normals(P)
-        length = [sqrt(inner(x, x)) for x in N]
-        safe = [function("max", x, LEAST) for x in length]
-        rows = [[int(r == s) - over(inner(N[r], pressed.G[r][s]), safe[r]) for s in each] for r in each]
-        step = _solved_near_unit(rows, [x - p for x, p in zip(length, P, strict=True)])
+        length = [[sqrt(inner(x, x)) for x in ends] for ends in N]
+        safe = [[function("max", x, LEAST) for x in ends] for ends in length]
+        rows = [[int(r == s) - _slope(N[r], pressed.G[r][s], safe[r]) for s in each] for r in each]
+        step = _solved_near_unit(rows, [sum(x, start=0) - p for x, p in zip(length, P, strict=True)])
         P = [p + d for p, d in zip(P, step, strict=True)]
     return _reached(pressed, P)
+
+
+def _slope(N: EqualPushes, g: EqualPushes, size: Sequence[Scalar]) -> Scalar:
+    """sum N_e.g_e/|N_e|"""
+    return sum((over(inner(x, y), z) for x, y, z in zip(N, g, size, strict=True)), start=0)
+
+
+def _is_exact(n: EqualPushes, g: EqualPushes) -> bool:
+    """True if a contact alone has a closed form."""
+    return len(n) == 1 or _vanish(g) or all(len(parts) == 1 for parts in n)
 
 
 def _solved_near_unit(rows: Sequence[Sequence[Scalar]], right: Sequence[Scalar]) -> list[Scalar]:
@@ -513,5 +565,6 @@ def _solved_near_unit(rows: Sequence[Sequence[Scalar]], right: Sequence[Scalar])
 def _reached(pressed: _Pressed, P: Sequence[Scalar]) -> list[Scalar]:
     """The values where they are |N|; elsewhere they are divided by 0, and there are none."""
     allowed = REACHED * sum((function("abs", p) for p in P), start=LEAST)
-    off = [function("abs", p - sqrt(inner(N, N))) for p, N in zip(P, pressed.normals(P), strict=True)]
+    reached = [sum((sqrt(inner(N, N)) for N in ends), start=0) for ends in pressed.normals(P)]
+    off = [function("abs", p - x) for p, x in zip(P, reached, strict=True)]
     return [over(p, selected(x, allowed, 1, 0)) for p, x in zip(P, off, strict=True)]

@@ -35,7 +35,7 @@ from eomgen.mechanics.free_bodies.solution import (
     solution_of_balance,
 )
 from eomgen.mechanics.free_bodies.structure import Structure
-from eomgen.mechanics.free_bodies.wrenches import Component, Effect, normals_of_joint
+from eomgen.mechanics.free_bodies.wrenches import Component, Effect, ends_of_joint, load_of
 from eomgen.mechanics.kinematics import Motion
 from eomgen.mechanics.start import ExactStart
 from eomgen.mechanics.state import Numbers
@@ -219,9 +219,20 @@ class Reactions:
                 )
         return self._labelled(owner, along, "friction")
 
-    def of_joint(self, body: str) -> tuple[int, ...]:
-        """Indices of the forces of a joint, across a slide or path, of a hinge all of them."""
-        return normals_of_joint(self.components, body)
+    def load(self, body: str) -> Scalar:
+        """The load by which a joint rubs: the size of its force, of a guide with a length of both at its ends.
+
+        Of a slide or path in the plane its force with its sign.
+        Raises:
+            Indeterminate: a force has no single value.
+        """
+        ends = ends_of_joint(self.balance.system.motion, self.components, body)
+        return load_of([[self.combined(dict(part), self._name_of(part)) for part in parts] for parts in ends])
+
+    def _name_of(self, part: tuple[tuple[int, Scalar], ...]) -> str:
+        """reaction_n(B), of several components the force of their joint at its ends."""
+        first = self.components[part[0][0]]
+        return first.name if len(part) == 1 else f"the force at the ends of the guide of '{first.owner}'"
 
     def friction_of_joint(self, joint: str) -> Scalar:
         """Dry friction along a variable of a joint, sliding or sticking, on the body.

@@ -21,6 +21,7 @@ from eomgen.mechanics.kinematics import (
 )
 from eomgen.model import Couple, MassProperties, PointForce
 from eomgen.symbolic.expression import (
+    Fraction,
     Matrix,
     Node,
     Scalar,
@@ -29,8 +30,10 @@ from eomgen.symbolic.expression import (
     Vector,
     depends_on,
     derivative,
+    function,
     is_zero,
     over,
+    sqrt,
 )
 from eomgen.symbolic.numeric import evaluate, fifty_digits, floats_of, rank, tolerances
 
@@ -176,6 +179,8 @@ def _armatures(motion: Motion, link: BodyLink) -> list[tuple[int, Scalar]]:
 
 
 FORCE, COUPLE = "N", "N*m"
+Ends = tuple[tuple[tuple[tuple[int, Scalar], ...], ...], ...]
+"""Forces, each by its parts along directions at right angles, each part a sum of (component, share)."""
 
 
 @dataclass(frozen=True)
@@ -208,7 +213,7 @@ class Component:
         side: the body on which it is the force of a hinge of several, the coordinate of a drive, the member of a
             truss, or "".
         bilateral_friction: of the friction of a bilateral contact, which is a component of its own: its factor for a
-            unit of |N| = sqrt(N_1^2 + N_2^2); None of all else.
+            unit of |N| = sqrt(N_1^2 + N_2^2), of a guide with a length of both its ends; None of all else.
     """
 
     owner: str
@@ -452,19 +457,54 @@ def _constraint_effects(axes: Axes, row: Row) -> tuple[Effect, ...]:
     return tuple(e for push in row.pushes for e in axes.effects_of(push))
 
 
-def normals_of_round(components: Sequence[Component], friction: Component) -> tuple[int, ...]:
-    """Indices of the components of the normal force to which the friction of a bilateral contact belongs."""
+def ends_of_round(motion: Motion, components: Sequence[Component], friction: Component) -> Ends:
+    """The forces by which a bilateral contact rubs, as combinations of the components."""
     if friction.kind == "joint":
-        return normals_of_joint(components, friction.owner)
+        return ends_of_joint(motion, components, friction.owner)
     mine = (friction.kind, friction.owner)
-    return tuple(j for j, c in enumerate(components) if (c.kind, c.owner) == mine and c.label.startswith("n "))
+    each = (j for j, c in enumerate(components) if (c.kind, c.owner) == mine and c.label.startswith("n "))
+    return (tuple(((j, 1),) for j in each),)
 
 
-def normals_of_joint(components: Sequence[Component], body: str) -> tuple[int, ...]:
-    """Indices of the forces of a joint, across a slide or path, of a hinge all of them; of a thread that of it."""
-    threaded = any((c.kind, c.owner, c.label) == ("joint", body, "wrench 1") for c in components)
+def ends_of_joint(motion: Motion, components: Sequence[Component], body: str) -> Ends:
+    """The forces by which a joint rubs, each by its parts, as combinations of the components.
+
+    One force: of a slide or path that across it, of a hinge all of it, of a thread that of its flanks. Of a guide with
+    a length L two, at its ends: N/2 +- M x n/L, with the force N and the couple M across it.
+
+    Source: Hibbeler, Engineering Mechanics: Statics, 8.2 (drawers and collars that bind).
+    """
+    own = [(j, c) for j, c in enumerate(components) if (c.kind, c.owner) == ("joint", body)]
+    threaded = any(c.label == "wrench 1" for _, c in own)
     labels = ("wrench 1",) if threaded else ("n", "n 1", "n 2", "x", "y", "z")
-    return tuple(j for j, c in enumerate(components) if (c.kind, c.owner) == ("joint", body) and c.label in labels)
+    forces = [(j, c) for j, c in own if c.label in labels]
+    link = motion.link(body)
+    laws = () if link.joint is None else link.joint.frictions
+    k, length = next(((k, law.guide) for k, _, law in laws if law.coulomb is not None), (0, None))
+    if length is None:
+        return (tuple(((j, 1),) for j, _ in forces),)
+    couples = [(j, c) for j, c in own if c.label.startswith("couple")]
+    n, L, found = link.S[k][1], motion.scope.value(length), []
+    for end in (1, -1):
+        parts = []
+        for j, c in forces:
+            e = c.effects[0].force
+            arms = [(i, 1 if c.label == "n" else m.effects[0].couple @ n.cross(e)) for i, m in couples]
+            parts.append(((j, Fraction(1, 2)), *((i, over(end * arm, L)) for i, arm in arms if not is_zero(arm))))
+        found.append(tuple(parts))
+    return tuple(found)
+
+
+def load_of(ends: Sequence[Sequence[Scalar]]) -> Scalar:
+    """The sum of the sizes of forces of such parts; of a single part as it is, with its sign."""
+    if len(ends) == 1 and len(ends[0]) == 1:
+        return ends[0][0]
+    return sum((size_of_parts(parts) for parts in ends), start=0)
+
+
+def size_of_parts(parts: Sequence[Scalar]) -> Scalar:
+    """abs(N), sqrt(N_1^2 + N_2^2)"""
+    return function("abs", parts[0]) if len(parts) == 1 else sqrt(sum((x * x for x in parts), start=0))
 
 
 def _friction(axes: Axes, row: Row) -> tuple[FrictionShare, ...]:

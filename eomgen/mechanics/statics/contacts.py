@@ -467,7 +467,7 @@ def _pressed(reactions: Reactions, contact: Contact) -> Scalar | None:
     if contact.size is not None:
         return None
     if contact.of_joint:
-        return _magnitude([reactions.value(j) for j in reactions.of_joint(contact.body)])
+        return reactions.load(contact.body)
     return reactions.normal(contact.name)
 
 

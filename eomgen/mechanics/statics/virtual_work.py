@@ -417,7 +417,7 @@ class StaticReactions:
         N: Scalar | None = 1
         if contact.size is None:
             try:
-                N = _resultant([self.balance.value(j) for j in self.balance.of_joint(contact.body)] or [None])
+                N = self.balance.load(contact.body)
             except Indeterminate:
                 N = None
         if along is None or N is None or contact.grip is None:
