@@ -79,6 +79,49 @@ def declared_pushes(system: System, state: State, force: str) -> Pushes:
     return declared.pushes(declared.acts_of(force))
 
 
+@dataclass(frozen=True)
+class CarriedFluid:
+    """The fluid that moves with a body, over the motion, ground axes.
+
+    Args:
+        body: its name.
+        place: to which its momenta belong [m].
+        v: velocity of the place in the fluid [m/s].
+        p, L: momentum, and angular momentum about the place [kg m/s, kg m^2/s].
+    """
+
+    body: str
+    place: Vector
+    v: Vector
+    p: Vector
+    L: Vector
+
+    def rates_about_origin(self, system: System) -> tuple[Scalar, ...]:
+        """(p', L' + v x p + r x p'), accelerations in them: the opposite of its push on the body."""
+        rates = system.scope.with_accelerations((*self.p, *self.L))
+        p, L = Vector(rates[:3]), Vector(rates[3:])
+        return (*p, *(L + self.v.cross(self.p) + self.place.cross(p)))
+
+
+def rates_of_fluids(system: System) -> tuple[tuple[Scalar, ...], ...]:
+    """Rates of momentum, and of moment of momentum about the origin, of all of them."""
+    return tuple(fluid.rates_about_origin(system) for fluid in fluids_carried(system).values())
+
+
+def fluids_carried(system: System) -> dict[str, CarriedFluid]:
+    """{force: what moves with its body}, as forces declare it, by the twists; found once."""
+    if fluids_carried not in system.found:
+        declared, found = Declared(system, {}), dict[str, CarriedFluid]()
+        for name, force in system.scope.model.forces.items():
+            for act in force.acts(declared) if force.moving else ():
+                if act.fluid and act.body is not None:
+                    R = system.motion.link(act.body).pose.R
+                    found[name] = CarriedFluid(act.body, Vector(act.moving), *(R @ x for x in act.fluid))
+        system.found[fluids_carried] = found
+    known: dict[str, CarriedFluid] = system.found[fluids_carried]
+    return known
+
+
 def placed_pushes(system: System, state: State, forces: Iterable[str]) -> Iterator[Placed]:
     """Forces that push at places, of some forces by name.
 

@@ -33,6 +33,7 @@ from eomgen.mechanics.free_bodies import (
     SystemFriction,
 )
 from eomgen.mechanics.kinematics import BodyLink, SystemInertia
+from eomgen.proof.declared_loads import fluids_carried
 from eomgen.proof.states import STEP, InNumbers, Way, way_through
 from eomgen.symbolic.expression import Matrix, Node, Scalar, State, Vector, Wrench, gradient, symbols_of
 from eomgen.symbolic.numeric import NoValue, balanced, evaluate, fifty_digits, rank, tolerances
@@ -308,7 +309,7 @@ class _Formulas:
         """Bias of rotors along every speed, less the generalized forces without a place."""
         loads = self.system.loads
         acting = [x + y for x, y in zip(loads.joint_forces, loads.placeless_forces, strict=True)]
-        rotors = SystemInertia(self.system.motion).added_bias
+        _, rotors = SystemInertia(self.system.motion).beside_bodies()
         return tuple(y - x for x, y in zip(acting, rotors, strict=True))
 
     @property
@@ -370,8 +371,25 @@ class _Bodies(InNumbers):
 
     @property
     def _inertia(self) -> list[Wrench]:
-        """Inertia wrench of every body, about its origin in its axes."""
-        return [_taken(mass, *motion) for mass, motion in zip(self._masses, self._motions, strict=True)]
+        """Inertia wrench of every body and the fluid that moves with it, about its origin in its axes."""
+        found = [_taken(mass, *motion) for mass, motion in zip(self._masses, self._motions, strict=True)]
+        for k, taken in self._fluids:
+            found[k] = found[k].plus(taken)
+        return found
+
+    @property
+    def _fluids(self) -> list[tuple[int, Wrench]]:
+        """(body, what its fluid takes): p' and L' + v x p about the place, by differences in ground axes."""
+        found = []
+        for fluid in fluids_carried(self.system).values():
+            link = self.motion.link(fluid.body)
+            arm, *others = (self.vector(x) for x in (fluid.place - link.pose.p, fluid.v, fluid.p))
+            rates = self._way.rates((*fluid.p, *fluid.L))
+            f, turning = Vector(rates[:3]), Vector(rates[3:])
+            R = Matrix.of(tuple(self.vector(row) for row in link.pose.R)).T
+            tau = turning + others[0].cross(others[1]) + arm.cross(f)
+            found.append((self.motion.index[fluid.body], Wrench(R @ tau, R @ f)))
+        return found
 
     @cached_property
     def _masses(self) -> list[list[Any]]:
@@ -394,6 +412,8 @@ class _Bodies(InNumbers):
             m, c, I, spin = mass[0], _size(mass[1:4]), _size(mass[4:13]), _size(w)
             force = m * (acc + wd * c + spin * spin * c)
             found.append((force, I * wd + spin * spin * I + c * force))
+        for k, taken in self._fluids:
+            found[k] = found[k][0] + _size(taken.f), found[k][1] + _size(taken.tau)
         return found
 
     @cached_property
@@ -457,7 +477,7 @@ class _Bodies(InNumbers):
 
     def of_rotors(self) -> Iterator[tuple[int, Any]]:
         """Rotors behind gears: armature D_k D_l a_l."""
-        found, a = SystemInertia(self.system.motion).added_mass, self.system.scope.symbols.a
+        (found, _), a = SystemInertia(self.system.motion).beside_bodies(), self.system.scope.symbols.a
         values = self.at([value for _, _, value in found])
         return ((i, value * self.state[a[j]]) for (i, j, _), value in zip(found, values, strict=True))
 
@@ -467,6 +487,15 @@ class _Bodies(InNumbers):
         slopes = _in_parts(self.at(self.formulas.slopes), len(self.system.scope.symbols.u) or 1)
         for lam, slope in zip(self.system.symbols.lam, slopes, strict=False):
             yield from ((k, -x * self.state[lam]) for k, x in enumerate(slope))
+        yield from self._of_fluids_that_slide()
+
+    def _of_fluids_that_slide(self) -> Iterator[tuple[int, Any]]:
+        """p' . d(R r')/du of fluids whose place a coordinate moves in its body."""
+        u, taken = self.system.scope.symbols.u, (wrench for _, wrench in self._fluids)
+        for (_, place, *_), wrench in zip(SystemInertia(self.system.motion).fluids, taken, strict=True):
+            own = self.motion.link(place[0] or "").pose.R.T @ self.motion.slide(place)
+            columns = zip(*(gradient(x, u) for x in own), strict=True) if self.motion.moves(place[1]) else ()
+            yield from ((k, wrench.f @ self.vector(column)) for k, column in enumerate(columns))
 
 
 def _taken(mass: Sequence[Any], w: Vector, wd: Vector, acc: Vector) -> Wrench:

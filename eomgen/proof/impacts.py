@@ -23,8 +23,9 @@ from eomgen.mechanics.impacts import ImpactEquations
 from eomgen.mechanics.kinematics import SystemInertia
 from eomgen.model import PointForce
 from eomgen.proof.check import Check, Tally
+from eomgen.proof.declared_loads import fluids_carried
 from eomgen.proof.states import real_state
-from eomgen.symbolic.expression import Node, Scalar, State, jacobian
+from eomgen.symbolic.expression import Node, Scalar, State, Vector, jacobian
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 
 SEEDS = (5, 6, 7)
@@ -119,8 +120,11 @@ def _body_unbalanced(found: ImpactEquations, body: str, state: State, after: Map
             if name == body:
                 force = _numbers(motion.link(body).pose.R @ wrench.f, state)
                 total = [0, *(a + after[row.impulse] * b for a, b in zip(total[1:], force, strict=True))]
+    fluids = (fluid.p for fluid in fluids_carried(found.system).values() if fluid.body == body)
+    P: Vector = sum(fluids, start=Vector.ZERO)
+    own = [0, *(b - a for a, b in zip(*(_numbers(P, {**state, **x}) for x in ({}, _later(found, after))), strict=True))]
     for axis in (1, 2, 3):
-        change = before[0] * (later[axis] - before[axis])
+        change = before[0] * (later[axis] - before[axis]) + own[axis]
         if abs(change - total[axis]) > tolerances.ZERO_AT_50 * (1 + abs(change)):
             return f"its momentum changes by {float(change):.10g}, the impulses give {float(total[axis]):.10g}"
     return ""

@@ -541,7 +541,7 @@ class NearbyStates:
         stated = [force.kinetic for force in scope.model.forces.values() if force.kinetic is not None]
         given = [formula.evaluate({**scope.names, **names}) for formula in stated]
         proof = Declared(self.state.equations.system, known)
-        others = (force.acts(proof) for force in scope.model.forces.values() if force.placeless and not force.kinetic)
+        others = (force.acts(proof) for force in scope.model.forces.values() if force.moving and not force.kinetic)
         given += [act.kinetic for acts in others for act in acts if act.kinetic is not None]
         return sum(evaluate(given, known, fifty_digits()), start=0 * SECOND_STEP)
 

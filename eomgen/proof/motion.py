@@ -427,8 +427,8 @@ def other_energies(equations: EquationsOfMotion, state: State) -> str:
 
 def _of_motion(proof: Declared) -> Iterator[Scalar]:
     scope = proof.system.scope
-    placeless = (force for force in scope.model.forces.values() if force.placeless)
-    yield from (act.kinetic for force in placeless for act in force.acts(proof) if act.kinetic is not None)
+    moving = (force for force in scope.model.forces.values() if force.moving)
+    yield from (act.kinetic for force in moving for act in force.acts(proof) if act.kinetic is not None)
     for link in proof.motion.links:
         mass, w = scope.mass_properties(link.name), link.twist.w
         v = link.twist.at(mass.com).v

@@ -17,7 +17,7 @@ from eomgen.mechanics.free_bodies import NamedReaction
 from eomgen.mechanics.kinematics import SystemScene
 from eomgen.mechanics.statics import SectionForces, StaticReactions
 from eomgen.proof.check import Check, Tally, differing
-from eomgen.proof.declared_loads import balanced_least, declared_pushes
+from eomgen.proof.declared_loads import CarriedFluid, balanced_least, declared_pushes, fluids_carried
 from eomgen.proof.states import SECOND_STEP, InNumbers, way_through, with_inputs
 from eomgen.symbolic.expression import LONGEST, Node, Scalar, State, parse, symbols_of
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
@@ -134,7 +134,17 @@ class _Cut(InNumbers):
         if self.equations is not None:
             for link in self.motion.links:
                 tally.add(f"'{link.name}'", partial(self._inertia, link.name))
+            for name, fluid in fluids_carried(self.system).items():
+                tally.add(f"the fluid of '{name}'", partial(self._of_fluid, name, fluid))
         return tally.checks()
+
+    def _of_fluid(self, name: str, fluid: CarriedFluid) -> str:
+        """-p' and -(L' + v x p) by differences of the momenta of a fluid."""
+        rates = way_through(self.system, self._moving, SECOND_STEP).rates((*fluid.p, *fluid.L))
+        at, v, p = (np.array([float(x) for x in self.vector(each)]) for each in (fluid.place, fluid.v, fluid.p))
+        force, turning = np.array([float(x) for x in rates]).reshape(2, 3)
+        due = np.concatenate([turning + np.cross(v, p) + np.cross(at, force), force])
+        return self._apart([push for push in self.pushes if push.name == f"fluid({name})"], -due)
 
     def _inertia(self, body: str) -> str:
         """-m a_C and -dL/dt by differences of the mass centre's places and of L = R I w."""

@@ -23,7 +23,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.free_bodies import NamedReaction, imbalance
 from eomgen.mechanics.statics import InfluenceLine, SectionForces, SectionPiece, StaticReactions
 from eomgen.proof.check import Certificate, Check, Tally, attempted, checked, first_wrong
-from eomgen.proof.declared_loads import acting_otherwise, balanced_least
+from eomgen.proof.declared_loads import acting_otherwise, balanced_least, rates_of_fluids
 from eomgen.proof.declared_threads import STRUNG, has_threads, strung_otherwise
 from eomgen.proof.drawn import DrawnCurve, DrawnPanel, ReportedPush, said_of, space_sections_drawn, structure_drawn
 from eomgen.proof.free_bodies import named_otherwise
@@ -78,7 +78,8 @@ def _structure_checks(
     yield from _left_out(found)
     proof = _Proof(found)
     name = "every body, every pair and the whole are in equilibrium"
-    yield attempted(name, IN_NUMBERS, lambda: imbalance(found.balance, proof.state, Random(7)))
+    fluids = rates_of_fluids(found.structure.system)
+    yield attempted(name, IN_NUMBERS, lambda: imbalance(found.balance, proof.state, Random(7), fluids))
     name = "reactions named by x, y and z are those along the ground's axes"
     yield attempted(name, "50 digits", lambda: named_otherwise(found.balance.balance, proof.state))
     system = found.structure.system

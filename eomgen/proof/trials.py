@@ -23,6 +23,7 @@ from eomgen.proof.declared_loads import (
     acting_otherwise,
     declared_state_rates,
     has_elements,
+    rates_of_fluids,
     undeclared,
     working_otherwise,
 )
@@ -459,7 +460,7 @@ class Trials:
         def check(state: State) -> str:
             moving = self._moving(state)
             refuse_noise(formulas, moving)
-            return imbalance(reactions, moving, Random(7))
+            return imbalance(reactions, moving, Random(7), rates_of_fluids(self.equations.system))
 
         if reactions.components:
             yield self._at_states("every body is in equilibrium with its reactions", "floating point", check)

@@ -276,7 +276,7 @@ def _arrows(forces: Sequence[BodyForce], lines: Sequence[np.ndarray], extent: fl
 def letter_of_force(state: CutState, k: int) -> str:
     """The letter of a force in LaTeX: of a reaction as derivations have it, of a load its formula where it is short."""
     push, notation = state.forces[k].push, notation_of(state.system.scope.model)
-    if push.kind == ForceKind.INERTIA:
+    if push.kind == ForceKind.INERTIA and not push.name.startswith("fluid("):
         return r"-I\,\alpha" if push.turns else r"-m\,a"
     if push.shares:
         named = next((each for each in state.study.named_reactions if each.name == push.name), None)

@@ -193,7 +193,7 @@ class WithoutContacts:
         sum (m dv, d(I w) + r x m dv) - sum Lam W, about its place. A joint whose share is not determined is left out.
         """
         system = self.system
-        given = any(not is_zero(P) for P in SystemInertia(system.motion).given_momenta)
+        given = any(force.placeless and force.moving for force in system.scope.model.forces.values())
         if given or any(not row.wrenches for row in system.constraints.rows):
             return {}  # what acts on coordinates acts on no body
         x, (acting, unknown) = self._x(values), self._acting(after)
@@ -282,10 +282,14 @@ class WithoutContacts:
 
         def entries() -> tuple[Scalar, ...]:
             motion, found = self.system.motion, list[Scalar]()
+            fluids = [(*place, momentum) for _, place, _, momentum in SystemInertia(motion).fluids]
             for link in motion.links:
                 mass = self.system.scope.mass_properties(link.name)
                 P = mass.m * motion.velocity((link.name, mass.com))
                 turning = link.pose.R @ (mass.I @ link.twist.w) + link.pose.point(mass.com).cross(P)
+                for _, place, momentum in (fluid for fluid in fluids if fluid[0] == link.name):
+                    own = momentum.turned(link.pose.R).moved(link.pose.point(place))
+                    P, turning = P + own.f, turning + own.tau
                 found += [*P, *turning, *link.pose.point(link.point)]
             return tuple(found)
 

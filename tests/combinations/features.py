@@ -225,7 +225,7 @@ FORBIDDEN: tuple[Forbidden, ...] = (
         )
         for contact in ("sliding", "sticking", "viscous")
         for factor in ("force", "second_force")
-        for force in ("potential", "kinetic", "generalized", "added_mass")
+        for force in ("potential", "kinetic", "generalized")
     ),
     *_each(
         ("tie", "gap"),

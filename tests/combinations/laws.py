@@ -985,23 +985,50 @@ def inertias(o: Any, now: Any, s: Any) -> list[tuple[np.ndarray, np.ndarray]]:
         if f["kind"] in ("kinetic", "added_mass"):
             M, bias = ARMATURE[f["kind"]](o, now, s, f)
             whole, part = np.zeros((n, n)), np.zeros(n)
-            whole[first:, first:], part[first:] = M, bias
+            i = 6 * o.bodies.index(_split(now, f["point"])) if "point" in f else first
+            here = slice(i, i + len(bias))
+            whole[here, here], part[here] = M, bias
             found.append((whole, part))
     return found
 
 
 def _of_fluid(now: Any, f: dict) -> float:
     """xi.A xi/2 of a body in a fluid, its own axes."""
-    body = _split(now, f["point"])
-    if body is None:
-        return 0.0
-    R = _now(now.poses[body][1])
-    xi = np.concatenate([R.T @ _against(f, now), R.T @ _now(now.spin(body))])
+    R, A = _now(now.poses[_split(now, f["point"])][1]), _around(now, f)
+    xi = np.concatenate([R.T @ _against(f, now), R.T @ _now(now.spin(_split(now, f["point"])))])
+    return float(xi @ A @ xi / 2)
+
+
+def _around(now: Any, f: dict) -> np.ndarray:
+    """A, 6 x 6."""
     given = f.get("matrix") or f["diagonal"]
     rows = np.diag([now.model.number(x) for x in given]) if "diagonal" in f else None
     A = np.array([[now.model.number(x) for x in row] for row in given]) if rows is None else rows
-    xi = xi[[0, 1, 5]] if len(A) == 3 else xi
-    return float(xi @ A @ xi / 2)
+    if len(A) == 6:
+        return A
+    whole, own = np.zeros((6, 6)), [0, 1, 5]
+    whole[np.ix_(own, own)] = A
+    return whole
+
+
+def _added(o: Any, now: Any, s: Any, f: dict) -> tuple[np.ndarray, np.ndarray]:
+    """(M, bias) in the rows of the body, its centre in ground axes and its spin in its own.
+
+    p' + w x p and L' + w x L + v x p with (p, L) = A (v, w), v = R^T (v_C - U) + w x d.
+    """
+    body, A = _split(now, f["point"]), _around(now, f)
+    p, R = now.poses[body]
+    C, U = p + ty.matmul(R, ty.vector(now.model.mass[body][1])), _stream(f, now)
+    U, U_rate = _now(U), _now(U.rate())
+    turned, w = _now(R), _now(R).T @ _now(now.spin(body))
+    d, past = turned.T @ (_now(now.point(f["point"])) - _now(C)), turned.T @ (_now(C.rate()) - U)
+    crossed = np.array([[0, -d[2], d[1]], [d[2], 0, -d[0]], [-d[1], d[0], 0]])
+    S = np.block([[turned.T, -crossed], [np.zeros((3, 3)), np.eye(3)]])
+    v = past + np.cross(w, d)
+    momenta = A @ np.concatenate([v, w])
+    P, L = momenta[:3], momenta[3:]
+    still = A @ np.concatenate([-turned.T @ U_rate - np.cross(w, past), np.zeros(3)])
+    return S.T @ A @ S, S.T @ (still + np.concatenate([np.cross(w, P), np.cross(w, L) + np.cross(v, P)]))
 
 
 def _kinetic(o: Any, now: Any, s: Any, f: dict) -> tuple[np.ndarray, np.ndarray]:
@@ -1012,7 +1039,7 @@ def _kinetic(o: Any, now: Any, s: Any, f: dict) -> tuple[np.ndarray, np.ndarray]
     def T(q: np.ndarray, v: np.ndarray, t: float) -> float:
         known = {name: Jet(np.array([[a], [b], [0.0]])) for name, a, b in zip(o.names, q, v, strict=True)}
         there = type(now)(now.model, Jet(np.array([[t], [1.0], [0.0]])), known)
-        return _number(there.value(f["energy"])) if f["kind"] == "kinetic" else _of_fluid(o.placed(there), f)
+        return _number(there.value(f["energy"]))
 
     def momentum(q: np.ndarray, t: float) -> np.ndarray:
         return np.array([(T(q, s.v + e, t) - T(q, s.v - e, t)) / 2 for e in rates])
@@ -1027,7 +1054,7 @@ def _kinetic(o: Any, now: Any, s: Any, f: dict) -> tuple[np.ndarray, np.ndarray]
     return M, along - slope
 
 
-ARMATURE: dict[str, Callable] = {"armature": lambda x: x, "kinetic": _kinetic, "added_mass": _kinetic}
+ARMATURE: dict[str, Callable] = {"armature": lambda x: x, "kinetic": _kinetic, "added_mass": _added}
 
 
 def own_kinetic(o: Any, now: Any) -> float:

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import eomgen
-from eomgen.errors import EomgenError, ModelError
+from eomgen.errors import ModelError
+from eomgen.results import free_bodies
 
 pytestmark = pytest.mark.slow
 
@@ -167,10 +168,144 @@ def test_what_cannot_be_an_added_mass_is_refused_by_name(old, new, message):
         eomgen.loads(text)
 
 
-def test_reactions_beside_an_added_mass_are_refused_by_name():
-    """Its inertia forces have no place: what a hinge bears is not known."""
-    text = FREE.replace('kind = "free", x = "x", y = "y", angle = "th"', 'kind = "revolute", angle = "th"')
-    text = text.replace("x = { speed = 2 }, y = 0, ", "") + "outputs.A = 'reaction_x(b)'\n"
-    with pytest.raises(EomgenError, match="water"):
-        answer = eomgen.solve(eomgen.loads(text))["A"]
-        raise EomgenError(answer.message or "")
+# -------- reactions -------------------------------------------------------------------------------------------
+
+
+PENDULUM = """
+eomgen = 1
+space = "plane"
+parameters = { m = 2, m_a = 1.5, l = 0.8, g = 9.81, F = 7 }
+coordinates = { th = { start = 0.5, speed = 1.2 } }
+bodies.bob = { mass = "m", center = ["l", 0], inertia = 0, joint = { kind = "revolute", angle = "th - pi/2" } }
+forces.weight = { kind = "gravity", acceleration = [0, "-g"] }
+forces.water = { kind = "added_mass", point = "bob.center", diagonal = ["m_a", "m_a", 0] }
+forces.lift = { kind = "force", point = "bob.center", force = [0, "F"] }
+"""
+
+
+def test_the_hinge_of_a_pendulum_under_water_bears_its_added_mass():
+    """Along the rod (m + m_a) l w^2 + (m g - F) cos(th), across it nothing; (m + m_a) l th'' = (F - m g) sin(th)."""
+    found = eomgen.reactions(eomgen.loads(PENDULUM), at="th = 0.6")
+    assert found.certify().ok
+    pull, fell = 2 * 9.81 - 7, math.cos(0.6) - math.cos(0.5)
+    along = 3.5 * (0.8 * 1.2**2 + 2 * pull / 3.5 * fell) + pull * math.cos(0.6)
+    due = (-along * math.sin(0.6), along * math.cos(0.6))
+    assert [found[f"reaction_{axis}(bob)"].value for axis in "xy"] == pytest.approx(due, rel=1e-12)
+
+
+def test_a_bob_that_is_cut_free_shows_the_push_of_the_water():
+    """The water pushes it by - m_a a, a force of its own at the point to which the added mass belongs."""
+    found = free_bodies(eomgen.loads(PENDULUM))
+    (push,) = (force for force in found.entries()["bodies"]["bob"] if force["name"] == "fluid(water)")
+    th, w = 0.5, 1.2
+    a = (7 - 2 * 9.81) * math.sin(th) / (3.5 * 0.8)
+    due = np.array([math.cos(th), math.sin(th)]) * a * 0.8 + np.array([-math.sin(th), math.cos(th)]) * 0.8 * w * w
+    assert found.certify().ok
+    assert push["value"] * np.array(push["direction"])[:2] == pytest.approx(-1.5 * due, rel=1e-9)
+
+
+AROUND = np.array(
+    [
+        [2, 0, 0, 0, 0, 0],
+        [0, 7, 0.3, 0.1, 0, 0.5],
+        [0, 0.3, 6, 0, -0.4, 0],
+        [0, 0.1, 0, 0.2, 0.02, 0.01],
+        [0, 0, -0.4, 0.02, 0.9, 0.03],
+        [0, 0.5, 0, 0.01, 0.03, 1.1],
+    ]
+)
+ARM = f"""
+eomgen = 1
+space = "space"
+coordinates = {{ th = {{ start = 0.4, speed = 1.3 }} }}
+[bodies.arm]
+mass = 3
+inertia = [0.2, 0.5, 0.6, 0.05, 0.03, 0.04]
+center = [0.6, 0.1, 0.05]
+points = {{ P = [0.7, 0.02, -0.03] }}
+joint = {{ kind = "revolute", axis = [0, 0, 1], angle = "th" }}
+[forces.weight]
+kind = "gravity"
+acceleration = [0, -9.81, 0]
+[forces.water]
+kind = "added_mass"
+point = "arm.P"
+matrix = {AROUND.tolist()}
+medium = ["0.5 + 0.2*t", "0.3*t^2 - 0.4", "0.1*t - 0.6"]
+[outputs]
+a = "th''"
+"""
+
+
+def test_the_hinge_of_an_arm_under_water_bears_what_newton_and_euler_say():
+    """f = -(p' + w x p), n = -(L' + w x L + v x p) at P, (p, L) = A (v, w), v that against the stream: Munk's moment in
+    it; 4 s, as all formulas are long."""
+    names = [f"reaction_{couple}{axis}(arm)" for couple in ("", "couple_") for axis in "xyz"]
+    answers = eomgen.solve(eomgen.loads(ARM + "".join(f'o{k} = "{name}"\n' for k, name in enumerate(names))))
+    th, w, wd = 0.4, np.array([0, 0, 1.3]), np.array([0, 0, answers["a"].value])
+    R = np.array([[np.cos(th), -np.sin(th), 0], [np.sin(th), np.cos(th), 0], [0, 0, 1]])
+    C, P, U, rate = map(np.array, ([0.6, 0.1, 0.05], [0.7, 0.02, -0.03], [0.5, -0.4, -0.6], [0.2, 0, 0.1]))
+    I = np.array([[0.2, 0.05, 0.04], [0.05, 0.5, 0.03], [0.04, 0.03, 0.6]])
+    v, vd = np.cross(w, P) - R.T @ U, np.cross(wd, P) - R.T @ rate + np.cross(w, R.T @ U)
+    p, L, pd, Ld = *np.split(AROUND @ [*v, *w], 2), *np.split(AROUND @ [*vd, *wd], 2)
+    f, n = -(pd + np.cross(w, p)), -(Ld + np.cross(w, L) + np.cross(v, p))
+    push = 3 * (np.cross(wd, C) + np.cross(w, np.cross(w, C)) + R.T @ [0, 9.81, 0])
+    force, couple = push - f, I @ wd + np.cross(w, I @ w) + np.cross(C, push) - n - np.cross(P, f)
+    due = [*(R @ force), *(R @ couple)]
+    assert due[5] == pytest.approx(0, abs=1e-12)
+    assert [answers[f"o{k}"].value for k in range(6)] == pytest.approx(due, rel=1e-10, abs=1e-10)
+
+
+def test_a_towed_sled_rubs_on_the_bottom_of_a_pond():
+    """(m + m_a) a = F - mu m g: the friction is that of its weight, the force of the rope at rest does not know m_a."""
+    text = """
+    eomgen = 1
+    space = "plane"
+    parameters = { m = 4, m_a = 3, mu = 0.2, g = 9.81, F = 20 }
+    coordinates = { x = { speed = 2 } }
+    bodies.sled = { shape = { kind = "particle", mass = "m" }, joint = { kind = "placed", at = ["x", 0] } }
+    forces.weight = { kind = "gravity", acceleration = [0, "-g"] }
+    forces.water = { kind = "added_mass", point = "sled.center", diagonal = ["m_a", "m_a", 0] }
+    forces.tow = { kind = "force", point = "sled.center", force = ["F", 0] }
+    constraints.bottom = { kind = "support", point = "sled.center", normal = [0, 1], friction = "mu" }
+    outputs = { a = "x''", N = "reaction_n(bottom)" }
+    """
+    answers = eomgen.solve(eomgen.loads(text))
+    assert answers["a"].value == pytest.approx((20 - 0.2 * 4 * 9.81) / 7, rel=1e-12)
+    assert abs(answers["N"].value) == pytest.approx(4 * 9.81, rel=1e-12)
+
+
+def test_a_hinge_takes_the_impulse_of_the_water():
+    """A stop in the hinge, e = 0.5: its couple (m + m_a) l^2 (1 + e) w and the force (m + m_a) l (1 + e) w."""
+    text = PENDULUM.replace('"th - pi/2" }', '"th - pi/2", limits = [-9, "-pi/3"], restitution = 0.5 }')
+    run = eomgen.simulate(eomgen.loads(text), time=0.05, target="numpy", rtol=1e-11, atol=1e-11)
+    (hit,) = run.impacts
+    w = math.sqrt(1.2**2 + 2 * (2 * 9.81 - 7) / (3.5 * 0.8) * (math.cos(math.pi / 6) - math.cos(0.5)))
+    P, th = 3.5 * 0.8 * 1.5 * w, math.pi / 6
+    due = {"impulse_x(bob)": -P * math.cos(th), "impulse_y(bob)": -P * math.sin(th)}
+    assert {name: hit.impulses[name] for name in due} == pytest.approx(due, rel=1e-8)
+
+
+STREAM = FREE.replace('kind = "free", x = "x", y = "y", angle = "th"', 'kind = "revolute", angle = "th"')
+STREAM = STREAM.replace("x = { speed = 2 }, y = 0, ", "").replace('"j"]', '"j"], medium = [2, 0]')
+
+
+def test_a_hull_in_a_steady_stream_rests_along_it_or_across_it():
+    """Munk: (m_x - m_y) U^2 sin(th) cos(th) = 0; along the stream th'' = (m_y - m_x) U^2 th/(J + j)."""
+    places = eomgen.statics(eomgen.loads(STREAM)).places
+    angles = sorted(abs(float(th)) for place in places for th in place.numbers.values())
+    assert angles == pytest.approx([0, math.pi / 2, math.pi / 2, math.pi], abs=1e-12)
+    small = eomgen.linearize(eomgen.loads(STREAM.replace("th = 0.3", "th = 0.1")))
+    grows = math.sqrt((5 - 0.7) * 4 / 0.7)
+    assert max(x.real for x in np.linalg.eigvals(np.array(small.A, float))) == pytest.approx(grows, rel=1e-9)
+    assert small.certify().ok
+
+
+def test_the_reactions_beside_an_added_mass_at_a_point_that_moves_in_its_body_are_refused_by_name():
+    """Along that way the fluid pushes no body."""
+    text = PENDULUM.replace("center = ", 'points = { P = ["l*cos(s)", 0] }, center = ').replace(
+        "th = {", "s = 0, th = {"
+    )
+    text = text.replace("bob.center", "bob.P", 1) + "outputs.A = 'reaction_x(bob)'\n"
+    answer = eomgen.solve(eomgen.loads(text))["A"]
+    assert answer.value is None and "water" in answer.message

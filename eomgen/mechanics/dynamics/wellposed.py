@@ -17,7 +17,19 @@ from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
 from eomgen.mechanics.kinematics import BodyLink
 from eomgen.mechanics.state import Doubles
 from eomgen.symbolic.exact import equal_at_random_states
-from eomgen.symbolic.expression import Expression, Fraction, Node, Scalar, State, depends_on, is_zero, order, symbols_of
+from eomgen.symbolic.expression import (
+    Expression,
+    Fraction,
+    Node,
+    Scalar,
+    State,
+    depends_on,
+    gradient,
+    is_zero,
+    order,
+    substituted,
+    symbols_of,
+)
 from eomgen.symbolic.numeric import FLOAT, NoValue, evaluate, fifty_digits, of_one_length, tolerances
 from eomgen.symbolic.print import text_size, to_text
 
@@ -48,6 +60,7 @@ class WellPosed:
             any(not is_zero(x) for x in by_itself)
             or depends_on(self.equations.V, (t, *self.equations.symbols.z))
             or depends_on(self.equations.T, (t, *self.equations.symbols.z))
+            or self.moves_at_rest
         ):
             return Extent(False)
         elastic = self.equations.system.motion.scope.from_potential(self.equations.V)
@@ -59,6 +72,15 @@ class WellPosed:
             (*self.equations.Q, *elastic),
             lambda x: equal_at_random_states(zip(x[:n], x[n:], strict=True)).equal,
         )
+
+    @property
+    def moves_at_rest(self) -> bool:
+        """True if a given kinetic energy is there without speeds, as of a fluid that streams past: T + V may change."""
+        scope, T = self.equations.system.scope, self.equations.T
+        if not any(force.moving for force in scope.model.forces.values()):
+            return False
+        still = dict.fromkeys(self.equations.symbols.u, 0)
+        return any(not is_zero(x) for x in substituted((T, *gradient(T, self.equations.symbols.u)), still))
 
     @property
     def why_not_conservative(self) -> str:

@@ -15,7 +15,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Constraints
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.instant import Quantities
-from eomgen.mechanics.kinematics import Loads, Scope, SystemScene
+from eomgen.mechanics.kinematics import Loads, Scope, SystemInertia, SystemScene
 from eomgen.mechanics.state import Doubles
 from eomgen.model import Table
 from eomgen.symbolic.exact import readable_all, simplest, vanishes
@@ -225,13 +225,15 @@ class StaticEquations:
         rows = [(*readable_all(substituted(row, given), Work.FORMULA), *(0 for _ in z)) for row in free.constraints.J]
         standing = StaticEquations.standing(free)  # a damper at a seat that moves with t has no force at rest
         loads = (standing.free or standing).loads
-        forces = loads.generalized_forces
+        streams = SystemInertia((standing.free or standing).motion).given_bias  # what flows past pushes at rest
+        forces = tuple(Q - x for Q, x in zip(loads.generalized_forces, streams, strict=True))
         _refuse_signs_of_rates(forces, free)
         holds_reactions = standing.scope.reactions_in_rates  # those are of the reduced system
         at_rest = standing if holds_reactions else standing.free or standing
         rates = _rates_at_rest(at_rest, {**given, **at_rest.still})
         Q = (*_at_rest(forces, given, free), *rates)
-        unbalanced = (*substituted(loads.powered_forces, given), *rates)
+        powered = tuple(Q - x for Q, x in zip(loads.powered_forces, streams, strict=True))
+        unbalanced = (*substituted(powered, given), *rates)
         phi = _relations(system, given, q)
         sigma = _left_at_rest(free, given, q)
         Q, unbalanced, phi, sigma = (

@@ -157,6 +157,9 @@ def _refuse_placeless_forces(system: System) -> None:
         pushes = [load for load in force.loads if isinstance(load, PointForce)]
         if any(_pushes_along(system, system.motion.slide_power(push)) for push in pushes):
             raise _moved_inside(f"the force '{force.name}'", f"forces.{force.name}")
+    for name, place, *_ in SystemInertia(system.motion).fluids:
+        if any(_pushes_along(system, x) for x in system.motion.slide(place)):
+            raise _moved_inside(f"the force '{name}'", f"forces.{name}")
 
 
 def _refuse_placeless_constraints(system: System) -> None:
@@ -296,7 +299,7 @@ def _applied(system: System, axes: Axes) -> list[tuple[Scalar, ...]]:
     """(force, moment about the mass centre) of everything given, on every body."""
     totals: list[tuple[Scalar, ...]] = [(0,) * 6 for _ in axes.motion.links]
     effects = [e for load in (*system.loads.placed, *system.loads.weights) for e in axes.effects_of(load)]
-    for effect in (*effects, *Effect.of_joints(system)):
+    for effect in (*effects, *Effect.of_joints(system), *Effect.of_fluids(system).values()):
         totals[effect.link] = tuple(a + b for a, b in zip(totals[effect.link], effect.six, strict=True))
     return totals
 

@@ -63,7 +63,7 @@ class CutForce:
     def on_bodies(balance: Balance) -> tuple[CutForce, ...]:
         """All that acts on each body: weights, loads, springs, dampers, drives, reactions, inertia; in this order."""
         found = [*_weights(balance.system), *_loads(balance.system), *_efforts(balance), *_reactions(balance)]
-        return (*found, *_inertia(balance))
+        return (*found, *_fluids(balance.system), *_inertia(balance))
 
 
 # -- loads -----------------------------------------------------------------------------------------
@@ -267,6 +267,12 @@ def _of_whole(balance: Balance, owner: str, mine: Mapping[int, Component]) -> It
 
 
 # -- inertia ---------------------------------------------------------------------------------------
+
+
+def _fluids(system: System) -> Iterator[CutForce]:
+    """Pushes of the fluid that moves with a body, by its inertia."""
+    for name, effect in Effect.of_fluids(system).items():
+        yield from _given(Axes(system.motion), (effect,), f"fluid({name})", ForceKind.INERTIA)
 
 
 def _inertia(balance: Balance) -> Iterator[CutForce]:

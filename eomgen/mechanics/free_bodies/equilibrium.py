@@ -6,8 +6,8 @@ The test is made in numbers, by D'Alembert's principle in three forms:
     each pair:    the forces of two bodies on each other have no resultant and no moment
     the whole:    sum of reactions and applied forces = dP/dt,   of their moments about the origin = dL/dt
 
-P and L are those of the bodies' twists, of which the bodies' own equations in the plane make no use; the forces of the
-whole are taken as the loads give them, not from the bodies' equations.
+P and L are those of the bodies' twists, of which the bodies' own equations in the plane make no use, and of the fluids
+that move with them; the forces of the whole are taken as the loads give them, not from the bodies' equations.
 """
 
 from __future__ import annotations
@@ -27,15 +27,16 @@ from eomgen.mechanics.free_bodies.wrenches import PLANE_ROWS, SPACE_ROWS, Axes, 
 from eomgen.mechanics.kinematics import GROUND
 from eomgen.model import Couple, MassProperties, PointForce
 from eomgen.symbolic.exact import equal
-from eomgen.symbolic.expression import Matrix, Pose, Scalar, State, Vector, is_zero
+from eomgen.symbolic.expression import Matrix, Pose, Scalar, ScalarRow, State, Vector, is_zero
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, floats_of, tolerances
 
 
-def imbalance(reactions: Reactions, state: State, rng: Random) -> str:
+def imbalance(reactions: Reactions, state: State, rng: Random, fluids: Iterable[ScalarRow] = ()) -> str:
     """Description of what is out of balance at a state; "" where nothing is. Reactions left open take random values.
 
     Args:
         state: values of all symbols, accelerations of the motion included, at 50 digits.
+        fluids: rates of momentum, and of its moment about the origin, of what moves with bodies, by a second way.
     Raises:
         NoValue: a reaction has none at the state.
     """
@@ -43,7 +44,8 @@ def imbalance(reactions: Reactions, state: State, rng: Random) -> str:
     x = _values(reactions, numbers, rng)
     wrenches = _Wrenches(reactions.balance, numbers)
     by_components = x[: len(reactions.components)]
-    return _of_bodies(reactions.balance, numbers, x) or _of_pairs(wrenches) or _of_the_whole(wrenches, by_components)
+    each = _of_bodies(reactions.balance, numbers, x) or _of_pairs(wrenches)
+    return each or _of_the_whole(wrenches, by_components, fluids)
 
 
 def _values(reactions: Reactions, numbers: BodyNumbers, rng: Random) -> np.ndarray:
@@ -173,10 +175,12 @@ def _body(push: PointForce | Couple) -> str | None:
     return push.body if isinstance(push, Couple) else push.place[0]
 
 
-def _of_the_whole(wrenches: _Wrenches, x: np.ndarray) -> str:
+def _of_the_whole(wrenches: _Wrenches, x: np.ndarray, fluids: Iterable[ScalarRow]) -> str:
     """The theorems of momentum and of moment of momentum."""
     unit, size = wrenches.of_components
     rates = wrenches.numbers.array(_momentum_rates(wrenches.system))
+    for fluid in fluids:
+        rates = rates + wrenches.numbers.array(fluid)
     applied = _applied(wrenches)
     total = x @ unit + applied - rates
     scale = 1 + np.abs(x) @ size.max(axis=1, initial=0.0) + np.abs(applied).max() + np.abs(rates).max()

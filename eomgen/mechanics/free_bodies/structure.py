@@ -89,7 +89,7 @@ class Structure:
         """(owner, effects of a unit) of every row; of an unknown of the loads its derivative, on the bodies."""
         axes = Axes(self.system.motion)
         given = [e for load in self.system.loads.placed for e in axes.effects_of(load)]
-        given += Effect.of_joints(self.system)
+        given += [*Effect.of_joints(self.system), *Effect.of_fluids(self.system).values()]
         own = [(component.owner, component.effects) for component in self.components]
         return (*own, *((p.name, tuple(filter(None, (_slope_of(e, p) for e in given)))) for p in self.unknowns))
 

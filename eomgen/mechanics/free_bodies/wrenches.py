@@ -17,9 +17,10 @@ from eomgen.mechanics.kinematics import (
     ContactMode,
     JointEffort,
     Motion,
+    SystemInertia,
     pushed_along,
 )
-from eomgen.model import Couple, MassProperties, PointForce
+from eomgen.model import BodyPoint, Couple, MassProperties, PointForce
 from eomgen.symbolic.expression import (
     Fraction,
     Matrix,
@@ -27,7 +28,9 @@ from eomgen.symbolic.expression import (
     Scalar,
     SparseRow,
     State,
+    Twist,
     Vector,
+    Wrench,
     depends_on,
     derivative,
     function,
@@ -82,6 +85,19 @@ class Effect:
         axes = Axes(system.motion)
         effects = [e for effort in system.loads.efforts if effort.body == body for e in _effort_effects(axes, effort)]
         return [*effects, *rotors_of(axes, axes.motion.link(body))]
+
+    @staticmethod
+    def of_fluids(system: System) -> dict[str, Effect]:
+        """Effect of each fluid that moves with a body, by the name of the force, at its place (Kirchhoff).
+
+        f = -(p' + w x p),   n = -(L' + w x L + v x p)
+        """
+        if "fluids" not in system.found:
+            axes = Axes(system.motion)
+            fluids = SystemInertia(system.motion).fluids
+            system.found["fluids"] = {name: _of_fluid(axes, at, v, p) for name, at, v, p in fluids}
+        found: dict[str, Effect] = system.found["fluids"]
+        return found
 
     @staticmethod
     def of_joints(system: System) -> list[Effect]:
@@ -153,6 +169,16 @@ def effects_at_joint(axes: Axes, link: BodyLink, force: Vector, couple: Vector) 
         f, n = -(to_parent @ force), -(to_parent @ couple)
         effects.append(Effect(link.parent, f, n, axes.arm(link.parent, link.local.p), link.local.p))
     return effects
+
+
+def _of_fluid(axes: Axes, at: BodyPoint, moving: Twist, momentum: Wrench) -> Effect:
+    (body, place), w, p, L = at, moving.w, momentum.f, momentum.tau
+    link = axes.motion.link(body or "")
+    rates = axes.motion.scope.with_accelerations((*p, *L))
+    f = Vector(rates[:3]) + w.cross(p)
+    n = Vector(rates[3:]) + w.cross(L) + moving.v.cross(p)
+    i, R = axes.motion.index[link.name], axes.of_body(link)
+    return Effect(i, -(R @ f), -(R @ n), axes.arm(i, place), place)
 
 
 def rotors_of(axes: Axes, link: BodyLink) -> list[Effect]:

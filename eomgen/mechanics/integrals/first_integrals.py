@@ -173,7 +173,8 @@ class FirstIntegrals:
     def jacobi(self) -> tuple[Scalar, Extent] | None:
         """(u . dT/du - T + V, in which pieces it stays constant): drives at a steady rate take energy in and out."""
         symbols = self.equations.symbols
-        if depends_on(self.equations.V, (symbols.t,)) or all(is_zero(x) for x in self.equations.nu):
+        moving = any(not is_zero(x) for x in self.equations.nu) or WellPosed(self.equations).moves_at_rest
+        if depends_on(self.equations.V, (symbols.t,)) or not moving:
             return None
         found = inner(symbols.u, gradient(self.equations.T, symbols.u)) - self.equations.T + self.equations.V
         (held,) = self.where_constant((found,))

@@ -7,14 +7,16 @@ from collections.abc import Iterator, Sequence
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics.motion import BodyLink, Motion
 from eomgen.mechanics.kinematics.scene import SystemScene
-from eomgen.model import MassProperties
+from eomgen.model import BodyPoint, MassProperties
 from eomgen.symbolic.expression import (
     Fraction,
     Matrix,
     Node,
     Scalar,
     ScalarRow,
+    Twist,
     Vector,
+    Wrench,
     gradient,
     inner,
     is_zero,
@@ -147,22 +149,27 @@ class SystemInertia:
     @property
     def added_mass(self) -> list[tuple[int, int, Scalar]]:
         """Entries (k, l, value) that are added to M: armature D_k D_l, and those of given energies."""
-        rows = []
+        return [*self._rotor_mass, *_given_mass(self.motion)]
+
+    @property
+    def _rotor_mass(self) -> Iterator[tuple[int, int, Scalar]]:
         for link, k, armature in self.rotors:
             row = self.motion.joint_row(link.name, k)
-            rows += [(i, j, armature * a * b) for i, a in row.items() for j, b in row.items()]
-        return [*rows, *_given_mass(self.motion)]
+            yield from ((i, j, armature * a * b) for i, a in row.items() for j, b in row.items())
 
     @property
     def added_bias(self) -> list[Scalar]:
         """Terms added to c: armature D_k (d/dt s' at a = 0), and those of given energies at a = 0."""
+        return self._rotor_bias(self.given_bias)
+
+    def _rotor_bias(self, given: ScalarRow) -> list[Scalar]:
         scope = self.motion.scope
         c: list[Scalar] = [0] * len(scope.symbols.u)
         for link, k, armature in self.rotors:
             bias = scope.time_derivative((link.s_rate[k],))[0]
             for i, factor in self.motion.joint_row(link.name, k).items():
                 c[i] = c[i] + armature * factor * bias
-        return [x + y for x, y in zip(c, _given_bias(self.motion), strict=True)]
+        return [x + y for x, y in zip(c, given, strict=True)]
 
     # -- given energies ----------------------------------------------------------------------------
 
@@ -177,6 +184,24 @@ class SystemInertia:
         """p = dT/dq' of the energies that are given, one for each coordinate."""
         w, T = _given_kinetic(self.motion)
         return substituted(gradient(T, w), dict(zip(w, self.motion.scope.rates, strict=True)))
+
+    @property
+    def fluids(self) -> list[tuple[str, BodyPoint, Twist, Wrench]]:
+        """(force, place, velocity in the fluid, momentum) of every fluid that moves with a body, in its axes."""
+        scenes = (
+            (name, force, SystemScene(self.motion, name)) for name, force in self.motion.scope.model.forces.items()
+        )
+        found = ((name, force.fluid(scene)) for name, force, scene in scenes if force.moving)
+        return [(name, *fluid) for name, fluid in found if fluid is not None]
+
+    def beside_bodies(self) -> tuple[list[tuple[int, int, Scalar]], list[Scalar]]:
+        """(entries added to M, terms added to c) of what moves with no body: rotors, and energies of coordinates."""
+        return [*self._rotor_mass, *_given_mass(self.motion, True)], self._rotor_bias(_given_bias(self.motion, True))
+
+    @property
+    def given_bias(self) -> ScalarRow:
+        """Share of given energies in c, along each speed."""
+        return _given_bias(self.motion)
 
     @property
     def given_inertia(self) -> ScalarRow:
@@ -239,16 +264,21 @@ def _by_twist(link: BodyLink, mass: MassProperties) -> BodyEnergy:
     return BodyEnergy(link.name, link.pose.R @ v, w, translation, HALF * (w @ (mass.I @ w)))
 
 
-def _given_kinetic(motion: Motion) -> tuple[tuple[Node, ...], Scalar]:
-    """(w, T): the kinetic energies that the model gives, in names w of the rates of all coordinates."""
+def _given_kinetic(motion: Motion, placeless: bool = False) -> tuple[tuple[Node, ...], Scalar]:
+    """(w, T): the kinetic energies that the model gives, in names w of the rates of all coordinates.
+
+    Args:
+        placeless: those of coordinates alone.
+    """
     scope = motion.scope.over_rates
-    scenes = ((force, SystemScene(Motion(scope, motion.links), name)) for name, force in scope.model.forces.items())
+    own = {name: force for name, force in scope.model.forces.items() if force.placeless or not placeless}
+    scenes = ((force, SystemScene(Motion(scope, motion.links), name)) for name, force in own.items())
     given = (force.kinetic_energy(scene) for force, scene in scenes)
     return scope.symbols.u, sum((T for T in given if T is not None), start=0)
 
 
-def _given_mass(motion: Motion) -> list[tuple[int, int, Scalar]]:
-    (w, T), scope = _given_kinetic(motion), motion.scope
+def _given_mass(motion: Motion, placeless: bool = False) -> list[tuple[int, int, Scalar]]:
+    (w, T), scope = _given_kinetic(motion, placeless), motion.scope
     if is_zero(T):
         return []
     flat = [x for row in jacobian(gradient(T, w), w) for x in row]
@@ -260,8 +290,8 @@ def _given_mass(motion: Motion) -> list[tuple[int, int, Scalar]]:
     return [entry for entry in entries if not is_zero(entry[2])]
 
 
-def _given_bias(motion: Motion) -> ScalarRow:
-    (w, T), scope = _given_kinetic(motion), motion.scope
+def _given_bias(motion: Motion, placeless: bool = False) -> ScalarRow:
+    (w, T), scope = _given_kinetic(motion, placeless), motion.scope
     if is_zero(T):
         return (0,) * len(scope.symbols.u)
     bias = scope.time_derivative(scope.rates)

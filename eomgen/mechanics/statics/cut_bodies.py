@@ -121,6 +121,8 @@ def _loads(system: System) -> Iterator[ActingForce]:
     for link in system.motion.links:
         if efforts := Effect.of_joint(system, link.name):
             yield ActingForce(f"what acts in the joint of {link.name}", _pushes(system, efforts), link.name)
+    for name, effect in Effect.of_fluids(system).items():
+        yield ActingForce(f"the inertia of the fluid of {name}", _pushes(system, (effect,)), name, kind="inertia")
 
 
 def _inertia(system: System) -> Iterator[ActingForce]:

@@ -393,7 +393,8 @@ class MemberLoads:
                 placed = [load for load in force.loads if isinstance(load, (PointForce, Couple))]
                 effects = [e for load in placed for e in axes.effects_of(load) if e.link == link]
                 yield from (self._placed(effect, f"the force '{force.name}'") for effect in effects)
-        yield from (effect for effect in Effect.of_joints(system) if effect.link == link)
+        own = (*Effect.of_joints(system), *Effect.of_fluids(system).values())
+        yield from (effect for effect in own if effect.link == link)
 
     def _place_of(self, effect: Effect, owner: str) -> Vector:
         """Place of a reaction: of a couple that of the forces of the same constraint."""

@@ -136,6 +136,7 @@ def loads_at_rest(structure: Structure) -> tuple[Acting, ...]:
         effects = tuple(Effect.of_joint(system, link.name))
         if effects:
             found.append(Acting(link.name, None, effects))
+    found += [Acting(name, None, (effect,)) for name, effect in Effect.of_fluids(system).items()]
     return tuple(found)
 
 

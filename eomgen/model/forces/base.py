@@ -7,13 +7,13 @@ equations are derived; `acts` gives it in numbers at a state, by which they are 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import field
+from dataclasses import field, replace
 from typing import Any, ClassVar, Protocol
 
 from eomgen.frozen import dataclass
 from eomgen.model.catalog import Catalog, owner_of
 from eomgen.model.diagnostics import Diagnostic
-from eomgen.model.forces.load import Load, LoadContext, Push, SpreadLoad
+from eomgen.model.forces.load import Fluid, Load, LoadContext, Push, SpreadLoad
 from eomgen.model.kinds import JointFriction
 from eomgen.model.part import MADE, Part
 from eomgen.model.positions import DocumentPath
@@ -40,6 +40,8 @@ class Act:
         force: along each of these; of a place, ground axes [N].
         couple: on the body, ground axes [N m].
         kinetic: a kinetic energy of what moves and is no body, over the motion; None: none [J].
+        fluid: (v, p, L) of the fluid that moves with the body at the place, over the motion, axes of the body: its
+            velocity against the fluid, momentum and angular momentum; (): none.
     """
 
     body: str | None = None
@@ -47,10 +49,11 @@ class Act:
     force: tuple[Any, ...] = ()
     couple: Vector = Vector.ZERO
     kinetic: Scalar | None = None
+    fluid: tuple[Vector, ...] = ()
 
     def times(self, k: Any) -> Act:
         """The action multiplied by a number."""
-        return Act(self.body, self.moving, tuple(k * x for x in self.force), k * self.couple, self.kinetic)
+        return replace(self, force=tuple(k * x for x in self.force), couple=k * self.couple)
 
 
 class StretchedRope(Protocol):
@@ -296,6 +299,7 @@ class Force(Part):
     elastic: ClassVar[bool] = False  # a spring
     tight: ClassVar[bool] = False  # one tension along its way
     placeless: ClassVar[bool] = False  # an energy of coordinates, without a point of application
+    moving: ClassVar[bool] = False  # it has a kinetic energy, of what moves and is no body
 
     @property
     def friction(self) -> JointFriction | None:
@@ -374,6 +378,10 @@ class Force(Part):
     def kinetic_energy(self, scene: LoadContext) -> Scalar | None:
         """T [J] of what moves and is no body, over the motion; None of a force that has none."""
         return None if self.kinetic is None else scene.value(self.kinetic)
+
+    def fluid(self, scene: LoadContext) -> Fluid | None:
+        """The fluid that moves with its body; None of a force that has none."""
+        return None
 
     def strands_at(self, scene: LoadContext) -> tuple[Any, ...]:
         """The straight pieces of what pulls along its way; () of others."""

@@ -49,6 +49,7 @@ class Kinetic(Force):
 
     kind: ClassVar[str] = "kinetic"
     placeless: ClassVar[bool] = True
+    moving: ClassVar[bool] = True
     energy: MotionEnergy
 
     def acts(self, here: ForceTrial) -> Iterator[Act]:

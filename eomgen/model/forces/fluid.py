@@ -10,10 +10,10 @@ from eomgen.model.catalog import Catalog, owner_of
 from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.fields import MOTION, TIME, FormulaRule, Leaf, VectorRule
 from eomgen.model.forces.base import AXES, Act, Force, ForceTrial, of_a_body
-from eomgen.model.forces.load import BodyPoint, Load, LoadContext, PointForce
+from eomgen.model.forces.load import Fluid, Load, LoadContext, PointForce
 from eomgen.model.kinds import Direction, PointName, SpaceDirection, VectorFormula
 from eomgen.model.positions import DocumentPath
-from eomgen.symbolic.expression import Expression, Fraction, Scalar, Vector, function, over, sqrt
+from eomgen.symbolic.expression import Expression, Fraction, Scalar, Twist, Vector, Wrench, function, over, sqrt
 
 Density = Annotated[Expression, FormulaRule("kg/m^3", "nonnegative")]
 WettedArea = Annotated[Expression, FormulaRule("m^2", "nonnegative")]
@@ -278,8 +278,8 @@ class AddedMass(Force):
     """The mass of the fluid that moves with a body: T = xi.A xi/2, xi its velocity and spin in the fluid, its own axes.
 
     The velocity is that of the point, less that of the fluid; A has the rows x, y, turn in the plane, and x, y, z and
-    the turns about them in space. Its inertia forces follow from T (Kirchhoff), and with them the moment that turns a
-    long hull across its way (Munk). Reactions of joints and constraints are not known then, as of a `kinetic` energy.
+    the turns about them in space. With the momentum (p, L) = A xi the fluid pushes the point with - (p' + w x p) and
+    the couple - (L' + w x L + v x p) (Kirchhoff); the last turns a long hull across its way (Munk).
 
     Args:
         point: of the body, to which A belongs.
@@ -290,7 +290,7 @@ class AddedMass(Force):
 
     kind: ClassVar[str] = "added_mass"
     one_of: ClassVar[tuple[str, ...]] = ("matrix", "diagonal")
-    placeless: ClassVar[bool] = True
+    moving: ClassVar[bool] = True
     point: PointName
     matrix: Annotated[tuple[tuple[Expression, ...], ...], AddedMassRule()] | None = None
     diagonal: Annotated[tuple[Expression, ...], AddedMassRule(True)] | None = None
@@ -314,23 +314,46 @@ class AddedMass(Force):
 
     def kinetic_energy(self, scene: LoadContext) -> Scalar:
         """T = xi.A xi/2 by the rates of the place and the axes."""
-        place: BodyPoint = scene.place(self.point)
+        return self._form(self._through_fluid(scene), scene.value)
+
+    def fluid(self, scene: LoadContext) -> Fluid:
+        """(p, L) = A xi"""
+        xi = self._through_fluid(scene)
+        six: list[Scalar] = [0] * 6
+        for i, j, value in self._entries(scene.value):
+            six[i] = six[i] + value * xi[j]
+        v, w, p, L = (Vector(x) for x in (xi[:3], xi[3:], six[:3], six[3:]))
+        return scene.place(self.point), Twist(w, v), Wrench(L, p)
+
+    def _through_fluid(self, scene: LoadContext) -> tuple[Scalar, ...]:
+        """xi, the velocity against the fluid and the spin in the axes of the body."""
         body = owner_of(self.point)
-        v = scene.orientation(body).T @ (scene.velocity(place) - scene.vector(self.medium))
-        return self._form((*v, *scene.spin(body)), scene.value)
+        v = scene.orientation(body).T @ (scene.velocity(scene.place(self.point)) - scene.vector(self.medium))
+        return (*v, *scene.spin(body))
 
     def acts(self, here: ForceTrial) -> Iterator[Act]:
-        """The same by the twist."""
+        """The same by the twist, its momenta by T(xi + e) - T(xi) - T(e) along each axis e."""
         v, w = here.in_stream(self.point, self.medium)
-        yield Act(kinetic=self._form((*v, *w), here.scalar))
+        xi = (*v, *w)
+        T = self._form(xi, here.scalar)
+        momenta = []
+        for k in range(6):
+            e = tuple(int(i == k) for i in range(6))
+            more = tuple(x + y for x, y in zip(xi, e, strict=True))
+            momenta.append(self._form(more, here.scalar) - T - self._form(e, here.scalar))
+        fluid = (v, Vector(momenta[:3]), Vector(momenta[3:]))
+        yield Act(*here.place(self.point), Vector.ZERO, kinetic=T, fluid=fluid)
 
     def _form(self, xi: tuple[Scalar, ...], value: Any) -> Scalar:
-        given: Any = self.diagonal or self.matrix
-        xi = (xi[0], xi[1], xi[5]) if len(given) == 3 else xi
-        if self.diagonal is not None:
-            twice = sum((value(m) * x * x for m, x in zip(self.diagonal, xi, strict=True)), start=0)
-        else:
-            pairs = product(range(len(xi)), repeat=2)
-            twice = sum((value(given[i][j]) * xi[i] * xi[j] for i, j in pairs), start=0)
-        found: Scalar = HALF * twice
+        found: Scalar = HALF * sum((x * xi[i] * xi[j] for i, j, x in self._entries(value)), start=0)
         return found
+
+    def _entries(self, value: Any) -> Iterator[tuple[int, int, Scalar]]:
+        """(row, column, entry) of A, 6 x 6."""
+        given: Any = self.diagonal or self.matrix
+        at = (0, 1, 5) if len(given) == 3 else range(6)
+        if self.diagonal is not None:
+            yield from ((i, i, value(m)) for i, m in zip(at, self.diagonal, strict=True))
+        else:
+            for (k, i), (n, j) in product(enumerate(at), repeat=2):
+                yield i, j, value(given[k][n])

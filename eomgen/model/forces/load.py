@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any, Protocol
 
 from eomgen.frozen import dataclass
-from eomgen.symbolic.expression import Matrix, Scalar, Vector
+from eomgen.symbolic.expression import Matrix, Scalar, Twist, Vector, Wrench
 
 BodyPoint = tuple["str | None", Vector]
 """(body, position in its axes); the body None is the ground."""
@@ -73,6 +73,8 @@ class SpreadLoad:
 
 Push = PointForce | Couple
 Load = PointForce | Couple | GeneralizedForce | UniformField
+Fluid = tuple[BodyPoint, Twist, Wrench]
+"""(place, velocity v of it in the fluid and spin w, momentum p = dT/dv and L = dT/dw), in the axes of the body"""
 
 
 class LoadContext(Protocol):
