@@ -327,8 +327,8 @@ class AddedMass(Force):
 
     def _through_fluid(self, scene: LoadContext) -> tuple[Scalar, ...]:
         """xi, the velocity against the fluid and the spin in the axes of the body."""
-        body = owner_of(self.point)
-        v = scene.orientation(body).T @ (scene.velocity(scene.place(self.point)) - scene.vector(self.medium))
+        body, place = owner_of(self.point), scene.place(self.point)
+        v = scene.orientation(body).T @ (scene.velocity(place) - scene.vector(self.medium))
         return (*v, *scene.spin(body))
 
     def acts(self, here: ForceTrial) -> Iterator[Act]:
