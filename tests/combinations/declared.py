@@ -223,8 +223,9 @@ class Declared:
                 for k in range(len(f["areas"])):
                     start = f["pressures"][k] if "pressures" in f else 0
                     found[f"{name}_p_{k + 1}"] = {"start": start, "law": "chamber", "of": name, "chamber": k}
-            for key, own in (("lateral", "slip"), ("longitudinal", "kappa")):
-                if f["kind"] == "tyre" and "relaxation" in f.get(key, {}):
+            for key, other, own in (("lateral", "longitudinal", "slip"), ("longitudinal", "lateral", "kappa")):
+                law = f.get(key) or (f.get(other) if "combined" in f else None) or {}
+                if f["kind"] == "tyre" and "relaxation" in law:
                     found[f"{name}_{own}"] = {"start": 0, "law": "slip", "of": name, "slip": own}
         return found
 

@@ -845,8 +845,16 @@ class Drawing:
             "tyre": {
                 "kind": "tyre",
                 "point": point,
-                "lateral": own.choice(({"stiffness": "3*F0"}, {**magic, "relaxation": "d/3"}, {**magic, "E": -0.3})),
+                "lateral": own.choice(
+                    (
+                        {"stiffness": "3*F0"},
+                        {**magic, "relaxation": "d/3"},
+                        {**magic, "E": -0.3},
+                        {"stiffness": "3*F0", "grip": "F0"},
+                    )
+                ),
                 **own.choice(({}, {"longitudinal": {**magic, "relaxation": "d/2"}, "rolling": "d*w*sin(w*t)"})),
+                **own.choice(({}, {"combined": 0.01, "rolling": "d*w*sin(w*t)"})),
                 "heading": self.v(*own.choice(((1, 0, 0), (3, 4, 0), (1, 2, 2)))),
                 "smooth": "d*w",
             },
@@ -856,6 +864,7 @@ class Drawing:
                 "radius": "d/4",
                 "longitudinal": own.choice(({"stiffness": "3*F0"}, magic, {**magic, "relaxation": "d/2"})),
                 **({} if plane else {"lateral": {"stiffness": "2*F0", "relaxation": "d"}, "axle": [1, 2, 0]}),
+                **own.choice(({}, {"combined": 0.02})),
                 **own.choice(({}, {"up": self.v(3, 4, 1)})),
                 "smooth": "d*w",
             },

@@ -697,9 +697,13 @@ def _rolling(f: dict, now: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, flo
 
 
 def _of_slip(law: dict, s: float, now: Any) -> float:
-    """c s, or the magic formula."""
+    """c s, mu F_z (1 - (1 - x)^3) of a brush, or the magic formula."""
     if "stiffness" in law:
-        return now.model.number(law["stiffness"]) * s
+        c = now.model.number(law["stiffness"])
+        if "grip" not in law:
+            return c * s
+        most = now.model.number(law["grip"])
+        return float(np.sign(s)) * most * (1 - max(0.0, 1 - c * abs(s) / (3 * most)) ** 3)
     B, C, D, E = (now.model.number(law.get(x, 0)) for x in "BCDE")
     return D * np.sin(C * np.arctan(B * s - E * (B * s - np.arctan(B * s))))
 
@@ -709,9 +713,16 @@ def _tyre(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
         return []
     ahead, left, arm, speed, drift, faster = _rolling(f, now)
     F = np.zeros(3)
-    if "lateral" in f:
+    if "combined" in f:
+        aside, forward = f.get("lateral", f.get("longitudinal")), f.get("longitudinal", f.get("lateral"))
+        slip = np.array(
+            [now.states.get(f"{name}_kappa", faster / speed), now.states.get(f"{name}_slip", drift / speed)]
+        )
+        s = float(np.sqrt(slip @ slip + now.model.number(f["combined"]) ** 2))
+        F = _of_slip(forward, s, now) * slip[0] / s * ahead - _of_slip(aside, s, now) * slip[1] / s * left
+    elif "lateral" in f:
         F -= _of_slip(f["lateral"], np.arctan(now.states.get(f"{name}_slip", drift / speed)), now) * left
-    if "longitudinal" in f:
+    if "longitudinal" in f and "combined" not in f:
         F += _of_slip(f["longitudinal"], now.states.get(f"{name}_kappa", faster / speed), now) * ahead
     found = _at(name, f, now, F)
     return [*found, Load(name, found[0].body, torque=np.cross(arm, F))]
@@ -721,7 +732,7 @@ def _slip(now: Any, declared: dict) -> float:
     """s' of a slip that relaxes along the way of the wheel."""
     f, own = now.model.forces[declared["of"]], declared["slip"]
     _, _, _, speed, drift, faster = _rolling(f, now)
-    law = f["lateral" if own == "slip" else "longitudinal"]
+    law = f.get("lateral" if own == "slip" else "longitudinal") or f["longitudinal" if own == "slip" else "lateral"]
     s = now.states[f"{declared['of']}_{own}"]
     return ((drift if own == "slip" else faster) - speed * s) / now.model.number(law["relaxation"])
 

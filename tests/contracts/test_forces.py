@@ -224,11 +224,14 @@ EXAMPLES = {
             f'point = "lower.P", lateral = {{ {MAGIC}, E = "z" }}, heading = [3, 1], smooth = "l"',
             f'point = "upper.R", lateral = {{ {MAGIC}, relaxation = "l" }}, {ROLLS}, rolling = "w*t"',
             'point = "lower.M", radius = "l", longitudinal = { stiffness = "k" }',
+            'point = "lower.P", lateral = { stiffness = "k", grip = "w*k/9" }',
+            f'point = "lower.M", lateral = {{ {MAGIC} }}, {ROLLS}, combined = 0.1, rolling = "w*t"',
             f'point = "lower.P", radius = "l", longitudinal = {{ {MAGIC}, relaxation = "c" }}, up = [1, 2], smooth = 1',
         ],
         SPACE: [
             f'point = "lower.P", lateral = {{ {MAGIC}, relaxation = "l" }}, {ROLLS}, rolling = 2, heading = [1, 1, 0]',
             f'point = "lower.P", radius = "l", lateral = {{ {MAGIC} }}, {ROLLS}, axle = [1, 2, 2], up = [0, 3, 4]',
+            'point = "lower.P", radius = "l", lateral = { stiffness = "k", relaxation = 1 }, combined = "c"',
         ],
     },
     "potential": {

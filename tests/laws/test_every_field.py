@@ -249,6 +249,8 @@ acceleration = [0, -9.81]
         tyre="kind = 'tyre'\npoint = 'two.Q'\nlateral = { B = 2, C = 1.3, D = 'k', E = 'c', relaxation = 'l' }\n"
         "longitudinal = { stiffness = 'k', relaxation = 0.2 }\nheading = [1, 'u']\nrolling = 'u'\nsmooth = 0.2",
         wheel="kind = 'tyre'\npoint = 'one.end'\nradius = 'l'\nlongitudinal = { B = 2, C = 1.3, D = 'k' }\nup = [1, 2]",
+        brush="kind = 'tyre'\npoint = 'two.Q'\nlateral = { stiffness = 'k', grip = 'm' }\n"
+        "combined = 0.1\nrolling = 'u'",
         rain="kind = 'mass_flow'\npoint = 'two.end'\nabsolute = ['u', \"-a'\"]",
     ),
     "dry": ARMS_2

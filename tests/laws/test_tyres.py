@@ -112,6 +112,69 @@ def test_the_magic_formula_is_that_of_the_books():
     assert rates(text)["x'"] == pytest.approx(formula(0.6 / 12, 11, 1.6, 4400, 0) / 20, rel=1e-12)
 
 
+BRUSH = "{ stiffness = 50000, grip = 3000 }"
+ALONE = LOOSE.replace("{ B = 9, C = 1.3, D = 4000, E = -0.4 }", BRUSH)
+TOGETHER = ALONE.replace(BRUSH, BRUSH + ", rolling = ROLLING, combined = 1e-7")
+
+
+def brush(s: float, c: float, most: float) -> float:
+    """Pacejka's brush, bristles pressed as a parabola: mu F_z (3 x - 3 x^2 + x^3), x = c s/(3 mu F_z) <= 1."""
+    x = min(c * s / (3 * most), 1)
+    return most * (3 * x - 3 * x**2 + x**3)
+
+
+@pytest.mark.parametrize("v", [0.3, 0.9, 4])
+def test_a_brush_slides_at_its_grip(v):
+    """In its adhesion and beyond, to the side alone, against the integral of its bristles."""
+    s = math.atan(v / 12)
+    assert -20 * rates(ALONE, **{"y'": v})["y'"] == pytest.approx(brush(s, 50000, 3000), rel=1e-12)
+    x = np.linspace(0, 1, 200001)  # of bristles along the contact, from its front
+    held = np.minimum(2 * 50000 * s * x, 6 * 3000 * x * (1 - x))
+    assert brush(s, 50000, 3000) == pytest.approx(np.mean(held), rel=1e-4)
+
+
+@pytest.mark.parametrize(("rolling", "v"), [(12.6, 0.9), (0, 0.9), (0, -3), (13, 0.0), (12, 2), (20, 5)])
+def test_combined_slip_pushes_against_the_slip_of_the_tread(rolling, v):
+    """F = f(|s|) s/|s|, s = (r omega - v_x, - v_y)/v_x: never above mu F_z; a locked wheel slides along its way."""
+    found = rates(TOGETHER.replace("ROLLING", str(rolling)), **{"y'": v})
+    F, slip = 20 * np.array([found["x'"], found["y'"]]), np.array([rolling - 12, -v])
+    size = float(np.linalg.norm(slip)) / 12
+    assert pytest.approx(brush(size, 50000, 3000) * slip / (12 * size), rel=1e-9, abs=1e-6) == F
+    assert np.linalg.norm(F) <= 3000 * (1 + 1e-12)
+
+
+def test_combined_slip_of_one_way_alone_is_that_of_its_law():
+    """Ahead the law of kappa, to the side that of tan alpha, each with its own numbers, as without `combined`."""
+    laws = "longitudinal = { B = 11, C = 1.6, D = 4400 }, rolling = ROLLING }"
+    text = LOOSE.replace("E = -0.4 } }", f"E = -0.4 }}, {laws}")
+    both = text.replace("rolling", "combined = 1e-8, rolling")
+    alone, together = (rates(x.replace("ROLLING", "12.6"), **{"y'": 0}) for x in (text, both))
+    assert together["x'"] == pytest.approx(alone["x'"], rel=1e-9) and together["y'"] == 0
+    gentle = 1e-3 * 12
+    alone, together = (rates(x.replace("ROLLING", "12"), **{"y'": gentle}) for x in (text, both))
+    assert together["y'"] == pytest.approx(alone["y'"], rel=1e-5) and abs(together["x'"]) < 1e-9
+
+
+def test_two_laws_of_combined_slip_stay_in_an_ellipse():
+    """(F_x/D_x)^2 + (F_y/D_y)^2 = 1 where both slide fully: C = 1, s very large."""
+    laws = "lateral = { B = 1e9, C = 1, D = 3000 }, longitudinal = { B = 1e9, C = 1, D = 5000 }, combined = 1e-6"
+    text = LOOSE.replace("lateral = { B = 9, C = 1.3, D = 4000, E = -0.4 }", laws + ", rolling = 10")
+    found = rates(text, **{"y'": 3})
+    assert (20 * found["x'"] / 5000) ** 2 + (20 * found["y'"] / 3000) ** 2 == pytest.approx(1, rel=1e-6)
+
+
+def test_combined_slip_relaxes_both_ways_by_the_law_that_is_given():
+    """Both slips are states; the force ahead is that of the state, not of the speeds."""
+    text = ALONE.replace(
+        BRUSH, "{ stiffness = 50000, grip = 3000, relaxation = 0.6 }, rolling = 12.6, combined = 0.001"
+    )
+    found = rates(text, tyre_slip=0.03, tyre_kappa=-0.02)
+    s = math.sqrt(0.03**2 + 0.02**2 + 0.001**2)
+    assert found["tyre_kappa"] == pytest.approx((0.6 + 12 * 0.02) / 0.6, rel=1e-12)
+    assert 20 * found["x'"] == pytest.approx(brush(s, 50000, 3000) * -0.02 / s, rel=1e-12)
+    assert 20 * found["y'"] == pytest.approx(brush(s, 50000, 3000) * -0.03 / s, rel=1e-12)
+
+
 ROLLS = """
 eomgen = 1
 space = "SPACE"
@@ -145,6 +208,9 @@ BAD = [
     ("E = -0.4 } }", "E = -0.4 }, longitudinal = { stiffness = 1 } }", "how fast the wheel"),
     ("E = -0.4 } }", "E = -0.4 }, radius = 1, heading = [1, 0] }", "'heading'"),
     ("D = 4000", 'D = { value = 1, unit = "m" }', "N"),
+    ("D = 4000", "D = 4000, grip = 3", "a grip without a stiffness"),
+    ("E = -0.4 } }", "E = -0.4 }, combined = 0.01 }", "how fast the wheel"),
+    ("E = -0.4 } }", "E = -0.4 }, rolling = 3, combined = 0 }", "is zero"),
 ]
 
 

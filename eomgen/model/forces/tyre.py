@@ -1,6 +1,6 @@
-"""Tyres that slip: linear, or by the magic formula, with or without relaxation."""
+"""Tyres that slip: linear, by the magic formula or as a brush, ahead and aside together, with or without relaxation."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Annotated, Any, ClassVar
 
 from eomgen.frozen import dataclass
@@ -20,15 +20,20 @@ SlipFactor = Annotated[Expression, FormulaRule("1", "", MOTION)]
 Heading = Annotated[VectorFormula, VectorRule(FormulaRule("1", "", MOTION))]
 PeakForce = Annotated[Expression, FormulaRule("N", "", MOTION)]
 RollingSpeed = Annotated[Expression, FormulaRule("m/s", "", MOTION)]
+GripForce = Annotated[Expression, FormulaRule("N", "positive", MOTION)]
 SmoothSpeed = Annotated[Expression, FormulaRule("m/s", "positive")]
+LeastSlip = Annotated[Expression, FormulaRule("1", "positive")]
 
 
 @dataclass(frozen=True, kw_only=True)
 class TyreLaw(Part):
-    """The force of a slip s: c s, or D sin(C atan(B s - E (B s - atan(B s)))).
+    """The force of a slip s: c s; with a grip c s (1 - x + x^2/3); or D sin(C atan(B s - E (B s - atan(B s)))).
+
+    x = c |s|/(3 mu F_z), and from x = 1 on all of the tread slides with mu F_z: a brush, its pressure a parabola.
 
     Args:
         stiffness: c [N]; it may hold the load.
+        grip: mu F_z, the largest force of a brush [N].
         B, C, E: of the magic formula (E left out: 0).
         D: of it, the largest force [N].
         relaxation: the way after which a slip has come to 63 % (None: at once) [m].
@@ -36,20 +41,28 @@ class TyreLaw(Part):
 
     title: ClassVar[str] = "law of a tyre"
     stiffness: SlipStiffness | None = None
+    grip: GripForce | None = None
     B: SlipFactor | None = None
     C: SlipFactor | None = None
     D: PeakForce | None = None
     E: SlipFactor | None = None
     relaxation: Length | None = None
 
-    def force(self, s: Scalar, value: Any, atan: Any, sin: Any) -> Scalar:
-        """f(s) [N]"""
+    def force(self, s: Scalar, value: Any, of: Any) -> Scalar:
+        """f(s) [N]; `of` gives the value of a function by its name."""
         found: Scalar
         if self.stiffness is not None:
-            found = value(self.stiffness) * s
+            c = value(self.stiffness)
+            if self.grip is None:
+                found = c * s
+                return found
+            slides = over(3 * value(self.grip), c)
+            held = of("min", of("max", s, -slides), slides)
+            x = over(of("abs", held), slides)
+            found = c * held * (1 - x + over(x * x, 3))
             return found
         x = value(self.B) * s
-        found = value(self.D) * sin(value(self.C) * atan(x - value(self.E) * (x - atan(x))))
+        found = value(self.D) * of("sin", value(self.C) * of("atan", x - value(self.E) * (x - of("atan", x))))
         return found
 
 
@@ -83,13 +96,19 @@ class Tyre(Force):
     v_x and v_y are the velocity of the wheel ahead and to the left, and the force to the left is - f(alpha), the one
     ahead f(kappa), kappa = (r omega - v_x)/|v_x|: both by laws of their own. With a `relaxation` l the slips are states
     of the model, NAME_slip and NAME_kappa of the tyre NAME: l s' + |v_x| s = v_y, and the same of kappa with
-    r omega - v_x. The wheel is a body that spins, with its `axle` and `radius`, or its place on a body that does not,
+    r omega - v_x. With `combined` both slips share one friction (similarity): with s^2 = kappa^2 + tan^2 alpha + s_0^2
+    the force is f(s) kappa/s ahead and - f(s) tan alpha/s to the left, each by its own law or both by the one that is
+    given: against the velocity of the tread where the laws are alike, in an ellipse where their largest forces differ.
+
+    The wheel is a body that spins, with its `axle` and `radius`, or its place on a body that does not,
     with a `heading`: in the plane seen from above.
 
     Args:
         point: the centre of a wheel with a `radius`, else the place of contact on the body that carries it.
         lateral: the law of the force to the side, of the angle alpha [rad].
         longitudinal: the law of the force ahead, of kappa.
+        combined: s_0, a slip below which the law of both together is nearly linear; both are laws of s then (None: each
+            force by its own slip alone).
         heading: of a wheel without a radius, in the axes of the body, 2 or 3 (None: its x axis); a
             steered one is ["cos(delta)", "sin(delta)"].
         rolling: r omega of it, given, where it has a longitudinal law [m/s].
@@ -103,6 +122,7 @@ class Tyre(Force):
     point: ContactName
     lateral: Law | None = None
     longitudinal: Law | None = None
+    combined: LeastSlip | None = None
     heading: Heading | None = None
     rolling: RollingSpeed | None = None
     radius: Radius | None = None
@@ -125,7 +145,7 @@ class Tyre(Force):
                 yield Diagnostic((*path, key), f"'{path[1]}' has {has}, and '{key}'", "leave one of them out", key=True)
         if (
             not spins
-            and self.longitudinal is not None
+            and (self.longitudinal is not None or self.combined is not None)
             and self.rolling is None
             and (*path, "rolling") not in catalog.broken
         ):
@@ -143,7 +163,7 @@ class Tyre(Force):
 
     @property
     def own_states(self) -> tuple[OwnState, ...]:
-        relaxes = [law is not None and law.relaxation is not None for law in (self.lateral, self.longitudinal)]
+        relaxes = [law is not None and law.relaxation is not None for law in self._laws]
         known = (OwnState("slip", "1", "lateral slip"), OwnState("kappa", "1", "longitudinal slip"))
         return tuple(state for state, own in zip(known, relaxes, strict=True) if own)
 
@@ -155,10 +175,17 @@ class Tyre(Force):
         return self._relaxed(self._rolls(here), here.value, lambda x: here.function("sqrt", x))
 
     def _relaxed(self, wheel: Rolling, value: Any, root: Any) -> tuple[Any, ...]:
-        given = ((self.lateral, "slip", wheel.drift), (self.longitudinal, "kappa", wheel.spin))
+        given = zip(self._laws, ("slip", "kappa"), (wheel.drift, wheel.spin), strict=True)
         rows = ((law, self._state(name, value), fed) for law, name, fed in given if law is not None and law.relaxation)
         speed = self._speed(wheel, value, root)
         return tuple(over(fed - speed * s, value(law.relaxation)) for law, s, fed in rows)
+
+    @property
+    def _laws(self) -> tuple[TyreLaw | None, TyreLaw | None]:
+        """The laws to the side and ahead; of combined slip the one that is given stands for both."""
+        if self.combined is None:
+            return self.lateral, self.longitudinal
+        return self.lateral or self.longitudinal, self.longitudinal or self.lateral
 
     def _state(self, name: str, value: Any) -> Any:
         return value(as_expression(f"{self.name}_{name}"))
@@ -176,37 +203,53 @@ class Tyre(Force):
         """- f(alpha) to the left, f(kappa) ahead, at the contact."""
         wheel = self._contact(scene)
         speed = self._speed(wheel, scene.value, lambda x: sqrt(x))
-
-        def atan(x: Scalar) -> Scalar:
-            return function("atan", x)
-
-        def sin(x: Scalar) -> Scalar:
-            return function("sin", x)
-
-        F = Vector.ZERO
-        for law, name, fed in ((self.lateral, "slip", wheel.drift), (self.longitudinal, "kappa", wheel.spin)):
-            if law is None:
-                continue
-            s = self._state(name, scene.value) if law.relaxation is not None else over(fed, speed)
-            lateral = name == "slip"
-            f = law.force(atan(s) if lateral else s, scene.value, atan, sin)
-            F = F - f * wheel.left if lateral else F + f * wheel.ahead
+        slips = [
+            None if law is None else over(fed, speed) if law.relaxation is None else self._state(name, scene.value)
+            for law, name, fed in zip(self._laws, ("slip", "kappa"), (wheel.drift, wheel.spin), strict=True)
+        ]
+        F = self._together(wheel, slips, scene) if self.combined is not None else self._apart(wheel, slips, scene)
         place = scene.place(self.point)
         if self.radius is None:
             return (PointForce(place, F),)
         return (PointForce(place, F), Couple(owner_of(self.point), wheel.arm.cross(F), place=place))
 
+    def _apart(self, wheel: Rolling, slips: Sequence[Any], scene: LoadContext) -> Vector:
+        """The force of each slip by itself."""
+        (tan_alpha, kappa), F = slips, Vector.ZERO
+        if self.lateral is not None:
+            F = F - self.lateral.force(function("atan", tan_alpha), scene.value, function) * wheel.left
+        if self.longitudinal is not None:
+            F = F + self.longitudinal.force(kappa, scene.value, function) * wheel.ahead
+        return F
+
+    def _together(self, wheel: Rolling, slips: Sequence[Any], scene: LoadContext) -> Vector:
+        """f(s) (kappa, - tan alpha)/s"""
+        (tan_alpha, kappa), least = slips, scene.value(self.combined)
+        s = sqrt(kappa * kappa + tan_alpha * tan_alpha + least * least)
+        lateral, ahead = (law.force(s, scene.value, function) for law in self._laws if law is not None)
+        F: Vector = over(ahead * kappa, s) * wheel.ahead - over(lateral * tan_alpha, s) * wheel.left
+        return F
+
     def acts(self, here: ForceTrial) -> Iterator[Act]:
-        """The same in numbers, by the twist of the wheel."""
+        """The same in numbers, by the twist of the wheel; of combined slip along the slip as a vector."""
         wheel = self._rolls(here)
         speed = self._speed(wheel, here.value, lambda x: here.function("sqrt", x))
-        push, functions = Vector.ZERO, [lambda x, name=name: here.function(name, x) for name in ("atan", "sin")]
-        if (law := self.lateral) is not None:
+        push, slipping = Vector.ZERO, Vector.ZERO
+        if (law := self._laws[0]) is not None:
             slip = wheel.drift / speed if law.relaxation is None else self._state("slip", here.value)
-            push = push - law.force(functions[0](slip), here.value, *functions) * wheel.left
-        if (law := self.longitudinal) is not None:
+            slipping = slipping - slip * wheel.left
+            if self.combined is None:
+                push = push - law.force(here.function("atan", slip), here.value, here.function) * wheel.left
+        if (law := self._laws[1]) is not None:
             kappa = wheel.spin / speed if law.relaxation is None else self._state("kappa", here.value)
-            push = push + law.force(kappa, here.value, *functions) * wheel.ahead
+            slipping = slipping + kappa * wheel.ahead
+            if self.combined is None:
+                push = push + law.force(kappa, here.value, here.function) * wheel.ahead
+        if self.combined is not None:
+            size = here.function("sqrt", slipping @ slipping + here.value(self.combined) ** 2)
+            for law, axis in zip(self._laws, (wheel.left, wheel.ahead), strict=True):
+                if law is not None:
+                    push = push + law.force(size, here.value, here.function) / size * (slipping @ axis) * axis
         yield Act(*here.place(self.point), push, wheel.arm.cross(push))
 
     # -- contact ---------------------------------------------------------------------------------------------
@@ -267,7 +310,7 @@ def _unit(v: Vector) -> Vector:
 
 
 def _of_law(path: DocumentPath, law: TyreLaw | None) -> Iterator[Diagnostic]:
-    """Diagnostics of a law that is both, or neither."""
+    """Diagnostics of a law that is both, or neither, and of a grip without a stiffness."""
     if law is None:
         return
     magic = [key for key in "BCDE" if getattr(law, key) is not None]
@@ -275,3 +318,5 @@ def _of_law(path: DocumentPath, law: TyreLaw | None) -> Iterator[Diagnostic]:
         yield Diagnostic((*path, magic[0]), "a stiffness and a magic formula", "leave one of them out", key=True)
     elif law.stiffness is None and not {*"BCD"} <= {*magic}:
         yield Diagnostic(path, "the law of a tyre has a stiffness, or B, C and D", "give 'stiffness', or these three")
+    elif law.stiffness is None and law.grip is not None:
+        yield Diagnostic((*path, "grip"), "a grip without a stiffness", "leave it out: D is the grip", key=True)
