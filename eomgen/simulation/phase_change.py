@@ -363,8 +363,10 @@ def settled(
         standing = _standing(phase, t, values, sliding=sliding, apart=apart)
         if standing and (undetermined := _indeterminate(refused)) is not None:
             held = {c.name: _closed(c) for c in contacts if c.name in standing}
-            tried = Configuration(Table({**modes, **held}), Table(pieces))
-            if not phase_models.of(tried).rests(t, values):
+            at_rest = Configuration(Table({**modes, **held}), Table(pieces))
+            if phase_models.of(at_rest).rests(t, values):
+                tried = at_rest
+            elif not _moves_by_one_law([c for c in contacts if c.name in standing], resting):
                 raise undetermined
         if tried not in ended and not any(modes[name].closed for name in together):
             if k < len(gauss) or not several_static:
@@ -450,6 +452,15 @@ def _contradiction(rivals: Sequence[Configuration], resting: Sequence[Contact]) 
     ways = [", ".join(f"'{c.name}' {words[way.modes[c.name].sense or 0]}" for c in resting) for way in rivals]
     what = f"static friction above kinetic leaves {len(ways)} ways to go on from rest: {'; or '.join(ways)}"
     return DerivationError(what, resting[0].declared_at, "leave out `static`, or start with a speed")
+
+
+def _moves_by_one_law(standing: Sequence[Contact], joints: Sequence[Contact]) -> bool:
+    """True if the motion is single though forces are not: friction at rest in joints, of a size of its own.
+
+    What a stop and the dry friction of its joint share at rest is open; when it leaves the stop is not.
+    """
+    rough = (contact for contact in standing if contact.grip is not None)
+    return bool(joints) and all(contact.size is not None for contact in rough)
 
 
 def _closed(contact: Contact) -> ContactMode:

@@ -562,6 +562,56 @@ def test_a_stop_that_is_open_at_the_start_holds_nothing():
     assert eomgen.statics(model, start={"y": -3, "phi": -5}).certify().ok
 
 
+STOPPED = """
+parameters = { m = 2, l = 0.8, g = 9.81, T = 0.5 }
+coordinates = { q = START }
+inputs = { M = "MOMENT" }
+[bodies.bob]
+shape = { kind = "rod", mass = "m", length = "l" }
+joint = { kind = "revolute", angle = "q", friction = { torque = "T" }, limits = [-1, 2], torque = "M" }
+[forces.weight]
+kind = "gravity"
+acceleration = [0, "-g"]
+"""
+
+
+def stopped(start: float, moment: str) -> eomgen.Model:
+    text = STOPPED.replace("START", repr(start)).replace("MOMENT", moment)
+    return eomgen.loads('eomgen = 1\nspace = "plane"\n' + text)
+
+
+def test_what_friction_holds_between_its_stops_rests_there_with_an_input_and_a_state_as_they_begin():
+    """|m g l cos(q)/2 - M| <= T: q between acos(2 (M + T)/(m g l)) and acos(2 (M - T)/(m g l)), the stops open."""
+    (rest,) = eomgen.statics(stopped(1.55, "0.1")).found.ranges
+    assert [rest.low, rest.high] == pytest.approx([math.acos(2 * (0.1 + s * 0.5) / (2 * 9.81 * 0.8)) for s in (1, -1)])
+    text = STOPPED.replace("START", "1.55").replace("MOMENT", "0").replace('"T" }', '"T*k" }')
+    text += '[states.k]\nstart = 0.5\nrate = "1 - k"\n'
+    (rest,) = eomgen.statics(eomgen.loads('eomgen = 1\nspace = "plane"\n' + text)).found.ranges
+    assert rest.high == pytest.approx(math.acos(-2 * 0.25 / (2 * 9.81 * 0.8)))
+
+
+def test_a_joint_with_friction_rests_on_its_stop_until_its_drive_beats_weight_and_friction():
+    """It leaves the stop at 6 t = m g l cos(1)/2 + T, and what stop and friction share before is in no column."""
+    run = eomgen.simulate(stopped(-1, "6*t"), time=0.9, target="numpy")
+    assert run.status == "finished"
+    assert run.phases[-1].start == pytest.approx((2 * 9.81 * 0.4 * math.cos(1) + 0.5) / 6, rel=1e-9)
+    assert np.isnan(run["friction(bob)"][1]) and np.isnan(run["reaction_couple(bob_low)"][1])
+    assert run["friction(bob)"][-1] == pytest.approx(-0.5) and run["q"][-1] > -1
+
+
+def test_the_reactions_of_a_hinge_that_rubs_by_its_own_force_follow_where_it_begins_to_slide():
+    """Let go at q: I q'' = -m g l sin(q)/2 + mu r |R|, R = m (l/2 q'' t - g)."""
+    text = STOPPED.replace("START", "1.2").replace("MOMENT", "0").replace("limits = [-1, 2], ", "")
+    text = text.replace('torque = "T" }', "coefficient = 0.3, radius = 0.02 }").replace(", T = 0.5", "")
+    model = eomgen.loads('eomgen = 1\nspace = "plane"\n' + text)
+    m, l, q = 2, 0.8, 1.2
+    F = 0.0
+    for _ in range(50):
+        a = (F - m * 9.81 * l / 2 * math.cos(q)) / (m * l * l / 3)
+        F = 0.3 * 0.02 * m * math.hypot(l / 2 * a * math.sin(q), l / 2 * a * math.cos(q) + 9.81)
+    assert eomgen.reactions(model)["friction(bob)"].value == pytest.approx(F, rel=1e-9)
+
+
 SCREW = """
 eomgen = 1
 space = "space"

@@ -508,6 +508,8 @@ def _unheld(balance: Balance, *, touched: bool) -> DerivationError | None:
         touched: only of directions along which some reaction acts: no number follows from the others.
     """
     free, allowed = _virtual_motions(balance)
+    if not free.size:  # the friction of a joint holds it too, where that goes by its reaction
+        return None
     Q = np.linalg.qr(allowed)[0] if allowed.size else np.zeros((free.shape[0], 0))
     unheld = free - Q @ (Q.T @ free)
     joined = _joined_by_a_coordinate(balance.system) or _placed_together(balance, unheld)

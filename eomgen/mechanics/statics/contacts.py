@@ -82,6 +82,12 @@ class ContactsAtStart:
         return {contact.name: ContactMode(sense=0) for contact in model.rough_contacts}
 
     @staticmethod
+    def apart(model: Model, names: Sequence[str]) -> ContactModes:
+        """Those of these contacts that are open at the start by their gaps, whatever the forces are."""
+        opened = _StartNumbers(model).open_contacts(names).modes
+        return {name: mode for name, mode in opened.items() if not mode.closed}
+
+    @staticmethod
     def refuse_open(held: System) -> None:
         """Refuses a structure at a start where a contact that is taken as closed is open.
 
@@ -486,8 +492,12 @@ def _in_formulas(system: System, condition: StickCondition) -> str:
 
 
 def _number(system: System, scalar: Scalar, places: Mapping[Node, float]) -> float | None:
-    """A scalar at rest in numbers; None where a parameter has no value, or it has none."""
-    (given,) = substituted((scalar,), system.scope.known_exactly)
+    """A scalar at rest in numbers, inputs and states as they begin; None where a value is missing, or it has none."""
+    scope, symbols = system.scope, system.symbols
+    begun = {symbols.inputs[name]: x for name, x in system.inputs.items()} | {
+        z: scope.start_value(z) for z in symbols.z
+    }
+    (given,) = substituted(substituted(substituted((scalar,), begun), {symbols.t: 0}), scope.known_exactly)
     try:
         found = float(evaluate((given,), dict(places), FLOAT)[0])
     except (KeyError, NoValue):

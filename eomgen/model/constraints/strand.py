@@ -130,7 +130,9 @@ class Strand:
             raise ModelError(
                 f"there is no straight strand between {_names(first, second)} at the start",
                 scene.where,
-                "put them apart, or give the directions in 'strands'",
+                "put them apart"
+                if scene.where.startswith("forces")
+                else "put them apart, or give the directions in 'strands'",
             )
         length = sqrt(rest)
         if _zero(h):
