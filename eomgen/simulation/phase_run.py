@@ -260,7 +260,7 @@ def _of_phase(s: PhaseRun, columns: ReactionColumns) -> Iterator[tuple[str, np.n
 
 
 def _shared(s: PhaseRun) -> frozenset[str]:
-    """Reactions that are open in a phase: what joints with friction that rest, as against their stops, hold with others.
+    """Reactions that are open in a phase: of joints with friction that rest, as against their stops.
 
     A joint may have a sense all the same: then a run goes on with one of all the forces that hold it (see `settled`).
     """
