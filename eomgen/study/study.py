@@ -645,20 +645,13 @@ MOST_TRIED = 16  # choices of contacts
 def _contacts_at_rest(model: Model) -> tuple[ContactModes, tuple[str, ...]]:
     """(the contacts that are open at the equilibrium nearest to the start, or stick there; what was assumed).
 
-    As at the start let go, where every choice contradicts something. Without coordinates nothing is open. What dry
-    friction holds rests where it starts: a stop that is open there stays so.
+    As at the start let go, where every choice contradicts something. Without coordinates nothing is open.
     """
     ending = [contact.name for contact in model.contacts if contact.unilateral]
     if not model.coordinates or not ending:
         return ContactsAtStart.at_rest(model), ()
     if model.rough_contacts:
-        sticking = ContactsAtStart.at_rest(model)
-        stops = [contact for contact in model.contacts if contact.unilateral and contact.name not in sticking]
-        apart = ContactsAtStart.apart(_let_go(model), [contact.name for contact in stops])
-        both = len({contact.body for contact in stops}) < len(stops)  # ends of one joint's way: never held together
-        if apart and (both or not System.of(model, {**sticking, **apart}).has_degrees_of_freedom):
-            return {**sticking, **apart}, ()
-        return sticking, ()
+        return ContactsAtStart.held_by_friction(_let_go(model)), ()
     begun = ContactsAtStart.of(_let_go(model))
     tried: list[frozenset[str]] = []
     wanted: frozenset[str] | None = frozenset(name for name, mode in begun.modes.items() if not mode.closed)

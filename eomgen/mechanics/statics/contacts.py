@@ -82,10 +82,17 @@ class ContactsAtStart:
         return {contact.name: ContactMode(sense=0) for contact in model.rough_contacts}
 
     @staticmethod
-    def apart(model: Model, names: Sequence[str]) -> ContactModes:
-        """Those of these contacts that are open at the start by their gaps, whatever the forces are."""
-        opened = _StartNumbers(model).open_contacts(names).modes
-        return {name: mode for name, mode in opened.items() if not mode.closed}
+    def held_by_friction(model: Model) -> ContactModes:
+        """Every contact with dry friction sticks where the model starts, and stops that are open there stay so.
+
+        What moves all the same rests on its stop at the best; then the stop is taken as closed, if it is the only one.
+        """
+        sticking = ContactsAtStart.at_rest(model)
+        stops = [contact for contact in model.contacts if contact.unilateral and contact.name not in sticking]
+        found = _StartNumbers(model).open_contacts([contact.name for contact in stops]).modes
+        modes = {**sticking, **{name: mode for name, mode in found.items() if not mode.closed}}
+        both = len({contact.body for contact in stops}) < len(stops)  # ends of one joint's way: never held together
+        return modes if both or not System.of(model, modes).has_degrees_of_freedom else sticking
 
     @staticmethod
     def refuse_open(held: System) -> None:
