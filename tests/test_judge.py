@@ -1128,3 +1128,29 @@ def test_every_value_of_a_file_can_be_changed_where_it_stands(name):
         if leaf.path[0] in EDITED and isinstance(leaf.value, Expression):
             table = getattr(model, leaf.path[0])
             assert with_leaf(table, leaf.path[1:], leaf.value) == table, leaf.path
+
+
+SERIES = """
+eomgen = 1
+space = "plane"
+parameters = { m = 1, k = 100, c = 20 }
+coordinates = { x = 0.1, s = 0 }
+[bodies.between]
+joint = { kind = "prismatic", axis = [1, 0], displacement = "s", stiffness = "k" }
+[bodies.mass]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "prismatic", axis = [1, 0], displacement = "x" }
+[forces.damper]
+kind = "damper"
+points = ["between.origin", "mass.center"]
+along = [1, 0]
+damping = "c"
+"""
+
+
+@each("equation, code", [("m*x'' = -k*s", 0), ("c*(x' - s') = k*s", 0), ("m*x'' = -k*x", 5), ("c*(x' - s') = -k*s", 5)])
+def test_the_command_judges_a_point_without_mass_by_its_balance_as_python_does(tmp_path, equation, code):
+    """Spring and damper in series: k s = c (x' - s') of the point between them, m x'' = - k s."""
+    (tmp_path / "series.toml").write_text(SERIES, encoding="utf-8")
+    told = CliRunner().invoke(main, ["verify", str(tmp_path / "series.toml"), equation, "--no-certify"])
+    assert (told.exit_code, eomgen.verify(eomgen.loads(SERIES), equation).ok) == (code, code == 0), told.output

@@ -24,6 +24,7 @@ from eomgen.judge.written_pages import PageEquation, equations_of, matrix_of
 from eomgen.mechanics.dynamics import Contribution, System
 from eomgen.model import Model, Valued
 from eomgen.proof import Certificate, certify_judged
+from eomgen.study import model_to_study
 from eomgen.symbolic.expression import Call, Expression, Scalar, ScalarRow, depends_on
 
 GENERAL = re.compile(r"\\sum\b|\bsum\b|_\{?(?:[ijk]|ik|ij)\}?(?![\w])")
@@ -269,7 +270,7 @@ def judged(
         UsageError: the only equation cannot be read.
     """
     placed = Valued.of(model, None, from_rest, options=("--set", "--from-rest")).model if from_rest else model
-    case = Case(placed, from_rest is not None)
+    case = Case(model_to_study(placed), from_rest is not None)
     judge = Judge(case, to_first_order, place_of(case, about))
     found: list[Verdict] = []
     entries: list[dict[str, Any]] = []
