@@ -69,7 +69,7 @@ def formulas(markdown: str) -> list[str]:
     return displays + re.findall(r"\$([^$\n]+)\$", rest)
 
 
-@sampled(4)
+@sampled(6)
 @pytest.mark.parametrize(("name", "method"), by_methods())
 def test_formulas_keep_to_what_amsmath_and_katex_share(name, method):
     """every command is known to both, every brace and environment closes, only aligned and cases are used"""
@@ -86,7 +86,7 @@ def test_formulas_keep_to_what_amsmath_and_katex_share(name, method):
         assert not lost_in_mathml(formula) and not lost_in_typst(formula), formula
 
 
-@sampled(3)
+@sampled(5)
 @pytest.mark.parametrize("name", derivable())
 def test_documents_are_balanced(name):
     assert balanced(rendered(equations(name).derivation, "latex"))

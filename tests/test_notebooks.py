@@ -12,6 +12,7 @@ from typing import Any
 
 import nbformat
 import pytest
+from slow_run import sampled
 
 ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT / "notebooks"))
@@ -38,6 +39,7 @@ def test_each_script_has_its_notebook_and_the_page_names_it():
     assert named == [f"{script.stem}.ipynb" for script in SCRIPTS]
 
 
+@sampled(2)
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
 def test_a_notebook_is_what_its_script_gives(script):
     """Every cell runs, its assertions hold, and sources, texts and numbers are those of the notebook that is kept."""

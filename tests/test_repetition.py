@@ -284,7 +284,7 @@ def answers(model: eomgen.Model) -> dict[str, object]:
 
 
 @pytest.mark.slow
-@each("path", usual(sorted(MODELS.rglob("*.toml")), 8, 3))
+@each("path", usual(sorted(MODELS.rglob("*.toml")), 12, 3))
 def test_a_model_is_the_same_as_a_part_of_another(path, tmp_path):
     """Where it stands, and moved by nothing, all that the names of its file can be: the same answers to its outputs."""
     own = eomgen.load(path)

@@ -113,7 +113,7 @@ def without_names(derivation: Document, scalars: Sequence[Scalar]) -> tuple[Scal
     return substituted(scalars, known)
 
 
-@sampled(2)
+@sampled(3)
 @pytest.mark.parametrize(("name", "method"), [pair for pair in by_every_method() if pair[0] in SMALL])
 def test_printed_equations_read_back_as_the_equations_of_motion(name, method):
     """divisor (left - right) = M a + c - Q - J^T lam"""
@@ -326,6 +326,7 @@ def test_the_payload_has_the_keys_that_others_rely_on():
     assert "definitions" not in data
 
 
+@sampled(2)
 @pytest.mark.parametrize(("name", "method"), by_methods())
 def test_every_symbol_that_is_used_is_named_in_the_nomenclature(name, method):
     """symbols of the formulas are rows of a table or defined; letters are in the notation"""

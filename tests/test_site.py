@@ -108,7 +108,7 @@ def test_a_search_asks_for_no_other_page(site):
     assert "SHOW_SEARCH_SUMMARY: false" in (site / "_static" / "documentation_options.js").read_text("utf-8")
 
 
-@sampled(2)
+@sampled(3)
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 def test_every_command_of_a_page_does_what_stands_there(page, tmp_path, monkeypatch):
     """In a new folder, one after the other.

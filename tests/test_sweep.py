@@ -272,7 +272,7 @@ def test_a_sweep_that_is_killed_goes_on_and_has_each_run_once(spring, tmp_path, 
     """
     folder, kills = tmp_path / "out", 0
     words = (spring, *SWEEP, "--workers", str(count), "-o", str(folder), "--no-certify")
-    for wait in (1, *beside(30), 90, 170, *beside(260)):
+    for wait in (1, *beside(30), 90, *beside(170, 260)):
         process = swept(*words)
         while process.poll() is None and done_runs(folder) < wait:
             time.sleep(0.02)

@@ -29,8 +29,8 @@ USUAL = (
     ("disc_leaves_cylinder", "solve"),
     ("beam_with_overhang", "statics"),
     ("two_mass_oscillator", "statics"),
-    ("seeds/ch16_p5", "derive"),
     ("seeds/ch22_p1", "solve"),
+    ("seeds/ch16_p5", "derive"),
 )
 NAMES = sorted(str(path.relative_to(MODELS).with_suffix("")) for path in MODELS.rglob("*.toml"))
 SPREAD = [(name, verb) for name in NAMES[::8] for verb in ("derive", "solve")]  # each line of all would take an hour

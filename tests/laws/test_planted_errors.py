@@ -16,7 +16,7 @@ from slow_run import ALL
 
 pytestmark = pytest.mark.slow
 
-COUNT = 20 if ALL else 6
+COUNT = 20 if ALL else 4
 ROOT = Path(__file__).parents[2]
 COMMAND = """
 import sys
