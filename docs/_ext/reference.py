@@ -41,7 +41,7 @@ from eomgen.model.fields import (  # noqa: E402
     TextRule,
     VectorRule,
 )
-from eomgen.model.forces.cylinders import Valve  # noqa: E402
+from eomgen.model.forces.cylinders import GasValve, Valve  # noqa: E402
 from eomgen.model.forces.fluid import AddedMassRule  # noqa: E402
 from eomgen.model.forces.tyre import TyreLaw  # noqa: E402
 from eomgen.model.joints.base import Turned  # noqa: E402
@@ -102,6 +102,7 @@ TABLES: Mapping[str, type[Any]] = {
     "inputs": Input,
     "bodies": Body,
     "valve": Valve,
+    "gas valve": GasValve,
     "law of a tyre": TyreLaw,
     "pieces": Piece,
     "friction": Resistance,

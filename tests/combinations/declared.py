@@ -219,7 +219,9 @@ class Declared:
         """States that forces bring along, by name: {start, law, of the force, its chamber or slip}."""
         found = {}
         for name, f in self.forces.items():
-            if f["kind"] == "hydraulic_cylinder" or (f["kind"] == "pneumatic_cylinder" and "flows" in f):
+            if f["kind"] == "hydraulic_cylinder" or (
+                f["kind"] == "pneumatic_cylinder" and f.keys() & {"flows", "valve"}
+            ):
                 for k in range(len(f["areas"])):
                     start = f["pressures"][k] if "pressures" in f else 0
                     found[f"{name}_p_{k + 1}"] = {"start": start, "law": "chamber", "of": name, "chamber": k}

@@ -722,6 +722,8 @@ class Drawing:
             "stroke": "12*d",
             "pressures": ["F0/d^2", "F0/(2*d^2)"],
         }
+        gas = {"opening": own.choice(("sin(w*t)", 0.4, -0.7)), "conductance": "m*w*d^2/(9*F0)", "critical": 0.3}
+        gas |= {"supply": own.choice(("F0/d^2", "9*F0/d^2")), "exhaust": "F0/(9*d^2)"}
         magic = {"B": 2.5, "C": 1.4, "D": "F0"}
         rated = {"opening": "0.4*sin(w*t)", "flow": "d^3*w/9", "drop": "F0/d^2", "supply": "3*F0/d^2"}
         if how == "spring_moved":
@@ -800,7 +802,13 @@ class Drawing:
                 "kind": "pneumatic_cylinder",
                 **cylinder,
                 "exponent": 1.3,
-                "flows": ["m*w/9*sin(w*t)", f"m*w/9*({name}_p_1 - {name}_p_2)*d^2/F0"],
+                **own.choice(
+                    (
+                        {"flows": ["m*w/9*sin(w*t)", f"m*w/9*({name}_p_1 - {name}_p_2)*d^2/F0"]},
+                        {"valve": {**gas, "smooth": "F0/d^2"}},
+                        {"valve": gas, "flows": ["m*w/9", 0]},
+                    )
+                ),
                 "gas": 2,
                 "temperature": 3,
             },

@@ -608,6 +608,7 @@ def _chamber(now: Any, declared: dict) -> float:
     flow = _number(now.value(f["flows"][k])) if "flows" in f else 0.0
     if f["kind"] == "pneumatic_cylinder":
         n, R, T = (now.model.number(f[key]) for key in ("exponent", "gas", "temperature"))
+        flow += _through_gas_valve(f["valve"], side, p[k], T, now) if "valve" in f else 0.0
         return n / V * (R * T * flow - p[k] * grows)
     flow -= side * now.model.number(f.get("leakage", 0)) * (p[0] - sum(p[1:]))
     if "valve" in f:
@@ -618,6 +619,19 @@ def _chamber(now: Any, declared: dict) -> float:
         root = dp / (dp * dp + smooth * smooth) ** 0.25 if dp else 0.0
         flow += y * now.model.number(v["flow"]) * root / np.sqrt(now.model.number(v["drop"]))
     return now.model.number(f["bulk"]) / V * (flow - grows)
+
+
+def _through_gas_valve(v: dict, side: int, p: float, T: float, now: Any) -> float:
+    """C p_u rho_0 sqrt(T_0/T), choked up to the ratio b of pressures, beyond a quarter of an ellipse (ISO 6358)."""
+    y = side * _number(now.value(v["opening"]))
+    start, end = (now.model.number(v["supply"]), p) if y > 0 else (p, now.model.number(v["exhaust"]))
+    high, low = max(start, end), min(start, end)
+    b, smooth = now.model.number(v["critical"]), now.model.number(v.get("smooth", 0))
+    ratio = low / high
+    w = 1.0 if ratio <= b else np.sqrt(1 - ((ratio - b) / (1 - b)) ** 2)
+    dp = min(high - low, high * (1 - b))
+    w *= np.sqrt(dp / np.hypot(dp, smooth)) if dp else 0.0
+    return float(y * now.model.number(v["conductance"]) * 1.185 * np.sqrt(293.15 / T) * high * w * np.sign(start - end))
 
 
 def _rope(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:

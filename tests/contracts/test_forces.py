@@ -34,6 +34,7 @@ SLIDING = 'points = ["upper.R", "lower.M"]'  # M slides in its body
 TWO, GROUND = 'points = ["upper.R", "lower.P"]', 'points = ["G", "lower.P"]'
 ONE = 'areas = 2, volumes = "l", retracted = "l/9"'
 BOTH = 'areas = [3, "k/9"], volumes = ["l", 1], retracted = 0.1, stroke = 9'
+GAS = 'conductance = "c", critical = 0.4, supply = "3*k", exhaust = "g/9"'
 WARM = 'gas = "g", temperature = 3'
 MAGIC = 'B = "l", C = "w", D = "k"'
 ROLLS = 'longitudinal = { stiffness = "g", relaxation = "w" }'
@@ -131,6 +132,8 @@ EXAMPLES = {
             f'{TWO}, {BOTH}, exponent = "w", pressures = ["k", "g"], outside = 1, length = "2*l"',
             f'{SLIDING}, {BOTH}, exponent = 1, pressures = ["k", "g"], length = "start"',
             f'{TWO}, {BOTH}, exponent = "w", pressures = ["k", "g"], flows = ["c*z", "F_p_1/k"], {WARM}',
+            f'{TWO}, {BOTH}, exponent = "w", pressures = ["k", "g"], {WARM}, valve = {{ opening = "l", {GAS} }}',
+            f'{TWO}, {BOTH}, exponent = 1, pressures = [1, 9], {WARM}, valve = {{ opening = "-z", {GAS}, smooth = 2 }}',
         ],
         SPACE: [f'{GROUND}, {BOTH}, exponent = "w", pressures = ["k", "g"], outside = 1, length = "2*l"'],
     },

@@ -125,6 +125,48 @@ def test_gas_that_flows_raises_a_load_at_its_pressure():
     assert run["gas_p_1"][-1] == pytest.approx(p, rel=1e-6)
 
 
+HELD = GAS.replace('{ start = 0.5, unit = "m" }', '{ motion = "0.5" }').replace("p_0 + m*g/A", "P")
+VALVE = """gas = 287
+temperature = 320
+valve = { opening = Y, conductance = 2e-8, critical = 0.3, supply = 8e5, exhaust = 1e5 }
+"""
+PUSHES = 1.4 * 287 * 320 * 2e-8 * 1.185 * math.sqrt(293.15 / 320) / (4e-4 + 2e-3 * 0.2)
+
+
+def filled(Y: float, P: float, time: float) -> float:
+    """Pressure in the chamber after a time, its piston held."""
+    text = (HELD + VALVE).replace("Y", str(Y)).replace('"P"', repr(P))
+    run = eomgen.simulate(eomgen.loads(text), time=time, target="numpy", rtol=1e-11, atol=1e-6)
+    assert run.ok
+    return float(run["gas_p_1"][-1])
+
+
+def test_a_choked_valve_fills_a_chamber_at_a_steady_rate():
+    """p' = (n R T/V) y C rho_0 sqrt(T_0/T) p_s, whatever the pressure in the chamber, below b p_s."""
+    p, rate = filled(0.5, 1e5, 0.08), 0.5 * PUSHES * 8e5
+    assert p < 0.3 * 8e5 and p == pytest.approx(1e5 + rate * 0.08, rel=1e-9)
+
+
+def test_a_chamber_empties_through_a_choked_valve_as_an_exponential():
+    """p' = - (n R T/V) y C rho_0 sqrt(T_0/T) p as long as p_e < b p."""
+    p = filled(-0.5, 7e5, 0.2)
+    assert 1e5 < 0.3 * p and p == pytest.approx(7e5 * math.exp(-0.5 * PUSHES * 0.2), rel=1e-9)
+
+
+def test_beyond_the_critical_ratio_a_chamber_fills_as_a_sine():
+    """r = b + (1 - b) sin(k t/(1 - b)), k = (n R T/V) y C rho_0 sqrt(T_0/T): the ellipse of ISO 6358, from r = b on."""
+    k, t = PUSHES, 0.15
+    assert filled(1, 0.3 * 8e5, t) == pytest.approx(8e5 * (0.3 + 0.7 * math.sin(k * t / 0.7)), rel=1e-8)
+    assert 0.5 < k * t / 0.7 < math.pi / 2
+
+
+def test_a_chamber_above_the_supply_flows_back_into_it():
+    """The sense of an edge is that of the difference of pressure: r = p_s/p there."""
+    rhs = eomgen.derive(eomgen.loads((HELD + VALVE).replace("Y", "1").replace('"P"', "1e6"))).rhs("numpy")
+    w = math.sqrt(1 - ((0.8 - 0.3) / 0.7) ** 2)
+    assert rhs(0.0, rhs.x0, rhs.p0)[-1] == pytest.approx(-PUSHES * 1e6 * w, rel=1e-12)
+
+
 def test_states_of_forces_go_where_declared_states_go():
     """Names, starts, typed starts, C, equilibria, JSON, and a run of many: as of [states]."""
     text = RAM + 'leakage = 1e-11\nflows = ["Q - 1e-11*ram_p_1", 0]\npressures = [4e6, "1e6"]\n'
@@ -157,3 +199,15 @@ def test_what_cannot_be_a_cylinder_is_refused_by_name(change, message):
         text, change = text.replace("Q = 0", "Q = 0, ram_p_1 = 1"), ("E = 9e8", "E = 9e8")
     with pytest.raises(ModelError, match=message):
         eomgen.loads(text.replace(*change))
+
+
+def test_a_valve_of_gas_is_refused_where_it_cannot_be():
+    """No constants of the gas; a critical ratio of 1; the valve of a fluid."""
+    bad = [
+        ("gas = 287\n", "", "'gas' is not given"),
+        ("0.3, supply", "1, supply", "critical ratio"),
+        ("critical", "drop", "critical"),
+    ]
+    for old, new, message in bad:
+        with pytest.raises(ModelError, match=message):
+            eomgen.loads((HELD + VALVE).replace("Y", "1").replace('"P"', "1e6").replace(old, new, 1))

@@ -236,7 +236,8 @@ acceleration = [0, -9.81]
         gas="kind = 'pneumatic_cylinder'\npoints = ['two.Q', 'one.start']\nareas = ['l', 0.2]\nvolumes = [1, 'm']\n"
         "retracted = 0.1\nstroke = 4\nexponent = 1.4\npressures = [1, 'k']\noutside = 'c'\nlength = 0.3",
         air="kind = 'pneumatic_cylinder'\npoints = ['two.Q', 'one.start']\nareas = 0.2\nvolumes = 1\nretracted = 0.1\n"
-        "exponent = 1.4\npressures = 'k'\nflows = 'c*u'\ngas = 2\ntemperature = 'l'",
+        "exponent = 1.4\npressures = 'k'\nflows = 'c*u'\ngas = 2\ntemperature = 'l'\n"
+        "valve = { opening = 'u', conductance = 'c', critical = 0.3, supply = 'k', exhaust = 0.1, smooth = 0.2 }",
         air_drag="kind = 'drag'\npoint = 'two.Q'\ndensity = 'm'\narea = 2\ncoefficient = 'c'\nmedium = ['u', 1]\n"
         "smooth = 0.3",
         wing="kind = 'plate'\npoint = 'two.Q'\ndensity = 'm'\narea = 2\nlift = '2*alpha'\ndrag = 'c + alpha^2'\n"

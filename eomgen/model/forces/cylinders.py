@@ -14,7 +14,7 @@ from eomgen.model.forces.load import LoadContext
 from eomgen.model.kinds import Length, NaturalLength
 from eomgen.model.part import Part, PartRule
 from eomgen.model.positions import DocumentPath
-from eomgen.symbolic.expression import Expression, Scalar, Vector, as_expression, function, over, sqrt
+from eomgen.symbolic.expression import Expression, Fraction, Scalar, Vector, as_expression, function, over, sqrt
 
 Many = tuple[Expression, ...]
 Areas = Annotated[Many, ListRule(FormulaRule("m^2", "positive"), 1, 2, single=True)]
@@ -30,6 +30,11 @@ GasConstant = Annotated[Expression, FormulaRule("J/(kg*K)", "positive")]
 Temperature = Annotated[Expression, FormulaRule("K", "positive", TIME)]
 SpoolOpening = Annotated[Expression, FormulaRule("1", "", MOTION)]
 RatedFlow = Annotated[Expression, FormulaRule("m^3/s", "positive")]
+Conductance = Annotated[Expression, FormulaRule("m^4*s/kg", "positive")]
+CriticalRatio = Annotated[Expression, FormulaRule("1", "nonnegative")]
+
+AIR = Fraction(1185, 1000), Fraction(29315, 100)
+"""density and temperature of the reference atmosphere of ISO 6358 [kg/m^3, K]"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,6 +89,72 @@ class Valve(Part):
             return rated * function("sign", dp) * sqrt(function("abs", dp))
         p = scene.value(self.smooth)
         return over(rated * dp, sqrt(sqrt(dp * dp + p * p)))
+
+
+@dataclass(frozen=True, kw_only=True)
+class GasValve(Part):
+    """A valve for gas, by ISO 6358: m' = y C rho_0 sqrt(T_0/T) p_u w(p_d/p_u) at each edge, where y > 0 into chamber 1.
+
+    Of the absolute pressures at an edge p_u is the higher and p_d the lower. w(r) = 1 up to the critical ratio b, where
+    the flow is choked, then sqrt(1 - ((r - b)/(1 - b))^2), which is smooth at b. rho_0 = 1.185 kg/m^3 and
+    T_0 = 293.15 K are those of the standard. Where y > 0 the second chamber empties into the exhaust, where y < 0 the
+    first, and the second is filled.
+
+    Args:
+        opening: y, a share of the stroke of the spool, between -1 and 1.
+        conductance: C, sonic, of an edge that is wide open [m^3/(s Pa)].
+        critical: b, below 1: 0.528 of a nozzle for air, less of a valve.
+        supply: pressure of the supply, absolute [Pa].
+        exhaust: pressure behind the exhaust, absolute [Pa].
+        smooth: p, where the root of the difference dp of pressure is dp/(dp^2 + p^2)^(1/4): it is steep at 0 [Pa].
+    """
+
+    title: ClassVar[str] = "gas valve"
+    opening: SpoolOpening
+    conductance: Conductance
+    critical: CriticalRatio
+    supply: GivenPressure
+    exhaust: GivenPressure
+    smooth: Modulus | None = None
+
+    def flows(self, scene: LoadContext, pressures: tuple[Scalar, ...], T: Scalar) -> tuple[Scalar, ...]:
+        """m' into each chamber [kg/s]."""
+        y, supply, exhaust = map(scene.value, (self.opening, self.supply, self.exhaust))
+        opened = function("max", 0, y), function("max", 0, -y)
+        rated = AIR[0] * scene.value(self.conductance) * sqrt(over(AIR[1], T))
+        found = []
+        for p, (filling, emptying) in zip(pressures, (opened, opened[::-1]), strict=False):
+            found.append(rated * (filling * self._edge(scene, supply, p) - emptying * self._edge(scene, p, exhaust)))
+        return tuple(found)
+
+    def _edge(self, scene: LoadContext, p_1: Scalar, p_2: Scalar) -> Scalar:
+        """p_u w, from the first pressure to the second: by q = p_1 - p_2, held where the flow is choked."""
+        b, high = scene.value(self.critical), function("max", p_1, p_2)
+        choked = (1 - b) * high
+        q = function("max", -choked, function("min", p_1 - p_2, choked))
+        size = function("abs", q)
+        if self.smooth is None:
+            root = function("sign", q) * sqrt(size)
+        else:
+            p = scene.value(self.smooth)
+            root = over(q, sqrt(sqrt(q * q + p * p)))
+        return over(root * sqrt(2 * choked - size), 1 - b)
+
+    def let_through(self, here: ForceTrial, pressures: list[Any], T: Any) -> list[Any]:
+        """The same in numbers, by the ellipse of the standard: each chamber is open to the supply or to the exhaust."""
+        given = (self.opening, self.conductance, self.critical, self.supply, self.exhaust, self.smooth)
+        y, C, b, supply, exhaust, smooth = map(here.value, given)
+        found = []
+        for p, sense in zip(pressures, (1, -1), strict=False):
+            ahead = sense * y > 0
+            start, end = (supply, p) if ahead else (p, exhaust)
+            high, low = max(start, end), min(start, end)
+            r = max(low / high, b)
+            w, q = here.function("sqrt", 1 - ((r - b) / (1 - b)) ** 2), high * (1 - r)
+            steep = here.function("sqrt", q / here.function("sqrt", q * q + smooth * smooth)) if q else q
+            m = abs(y) * C * AIR[0] * here.function("sqrt", AIR[1] / T) * high * w * steep
+            found.append(m if ahead == (start > end) else -m)
+        return found
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -248,16 +319,18 @@ class HydraulicCylinder(PressedCylinder):
 class PneumaticCylinder(PressedCylinder):
     """A cylinder with gas, which pushes two points apart by A_1 (p_1 - p_0) - A_2 (p_2 - p_0), p_0 outside.
 
-    Closed chambers follow p V^n = constant: a gas spring, with an energy. With mass flows m' the absolute pressures are
-    states of the model, NAME_p_1 and NAME_p_2 of the cylinder NAME: p_1' = n/(V_1 + A_1 x) (R T m_1' - p_1 A_1 x') and
-    p_2' = n/(V_2 + A_2 (h - x)) (R T m_2' + p_2 A_2 x'), x the distance less `retracted`.
+    Closed chambers follow p V^n = constant: a gas spring, with an energy. With mass flows m' or a valve the absolute
+    pressures are states of the model, NAME_p_1 and NAME_p_2 of the cylinder NAME:
+    p_1' = n/(V_1 + A_1 x) (R T m_1' - p_1 A_1 x') and p_2' = n/(V_2 + A_2 (h - x)) (R T m_2' + p_2 A_2 x'), x the
+    distance less `retracted`.
 
     Args:
         pressures: p_1 and p_2, absolute, at the start; of closed chambers where the cylinder has its `length` [Pa].
         exponent: n: 1 where the temperature stays, 1.4 of air without exchange of heat.
         outside: p_0, absolute (None: 0) [Pa].
         length: at which closed chambers have their `pressures` [m], or "start": the distance at the start (None).
-        flows: m_1' and m_2' into the chambers (None: closed) [kg/s].
+        flows: m_1' and m_2' into the chambers (None: none but those of the valve) [kg/s].
+        valve: a valve to a supply and an exhaust.
         gas: R of the gas that flows [J/(kg K)].
         temperature: T of it [K].
     """
@@ -268,6 +341,7 @@ class PneumaticCylinder(PressedCylinder):
     outside: Pressure | None = None
     length: NaturalLength | None = None
     flows: MassFlows | None = None
+    valve: Annotated[GasValve, PartRule(GasValve)] | None = None
     gas: GasConstant | None = None
     temperature: Temperature | None = None
 
@@ -275,18 +349,27 @@ class PneumaticCylinder(PressedCylinder):
         """Diagnostics of the same, of gas that flows without its constants, and of constants that nothing needs."""
         yield from PressedCylinder.diagnostics(self, path, catalog)
         for key in ("gas", "temperature"):
-            if self.flows is not None and getattr(self, key) is None and (*path, key) not in catalog.broken:
+            if not self.is_closed and getattr(self, key) is None and (*path, key) not in catalog.broken:
                 yield Diagnostic(path, f"gas flows in '{path[1]}', and its '{key}' is not given", f"give '{key}'")
-            elif self.flows is None and getattr(self, key) is not None:
+            elif self.is_closed and getattr(self, key) is not None:
                 what = f"'{path[1]}' is closed: no gas flows whose '{key}' matters"
                 yield Diagnostic((*path, key), what, "leave it out, or give 'flows'", key=True)
-        if self.flows is not None and self.length is not None:
+        b = None if self.valve is None else self.valve.critical.literal
+        if b is not None and b >= 1:
+            what = f"the valve of '{path[1]}' has the critical ratio {b}"
+            yield Diagnostic((*path, "valve", "critical"), what, "it is below 1: 0.528 of a nozzle for air")
+        if not self.is_closed and self.length is not None:
             what = f"the pressures of '{path[1]}' are those at the start, where gas flows"
             yield Diagnostic((*path, "length"), what, "leave it out", key=True)
 
     @property
+    def is_closed(self) -> bool:
+        """True if no gas flows in and out."""
+        return self.flows is None and self.valve is None
+
+    @property
     def own_states(self) -> tuple[OwnState, ...]:
-        return () if self.flows is None else self.pressure_states(self.pressures, "absolute pressure")
+        return () if self.is_closed else self.pressure_states(self.pressures, "absolute pressure")
 
     @property
     def slack_at_start(self) -> bool:
@@ -294,12 +377,12 @@ class PneumaticCylinder(PressedCylinder):
 
     @property
     def of_the_start(self) -> bool:
-        return self.flows is None and self.length in (None, "start")
+        return self.is_closed and self.length in (None, "start")
 
     def pressed(self, scene: LoadContext, line: Reach) -> tuple[Scalar, ...]:
         """p - p_0; of closed chambers p = p_1 (V_0/V)^n."""
         found = self.own_pressures(scene)
-        if self.flows is None:
+        if self.is_closed:
             n = scene.value(self.exponent)
             given = zip(self.pressures, self._shrunk(scene, line.length), strict=True)
             found = tuple(scene.value(p) * _power(ratio, n) for p, (_, ratio) in given)
@@ -307,30 +390,32 @@ class PneumaticCylinder(PressedCylinder):
 
     def state_rates(self, scene: LoadContext) -> tuple[Scalar, ...]:
         """n/V (R T m' - p V')"""
-        if self.flows is None:
+        if self.is_closed:
             return ()
-        line, n = self.line(scene), scene.value(self.exponent)
-        warm = scene.value(self.gas) * scene.value(self.temperature)
+        line, n, p = self.line(scene), scene.value(self.exponent), self.own_pressures(scene)
+        T = scene.value(self.temperature)
+        warm = scene.value(self.gas) * T
+        coming: tuple[Scalar, ...] = (0,) * len(p) if self.flows is None else tuple(map(scene.value, self.flows))
+        if self.valve is not None:
+            coming = tuple(a + b for a, b in zip(coming, self.valve.flows(scene, p, T), strict=True))
         V, V_rates = self.own_volumes(scene, line.length), self.volume_rates(scene, line)
-        rows = zip(V, V_rates, self.own_pressures(scene), map(scene.value, self.flows), strict=True)
+        rows = zip(V, V_rates, p, coming, strict=True)
         return tuple(over(n * (warm * m - p * rate), v) for v, rate, p, m in rows)
 
     def rates(self, here: ForceTrial) -> tuple[Any, ...]:
         """n (R T m' - p V')/V"""
         length, way = self.element.measured(here)
         n, R, T = map(here.value, (self.exponent, self.gas, self.temperature))
-        rows = zip(
-            self.filled(here, length),
-            self.grows(here, way),
-            self.held(here),
-            map(here.value, self.flows or ()),
-            strict=True,
-        )
+        pressures = self.held(here)
+        comes = [0 * T for _ in pressures] if self.flows is None else [here.value(m) for m in self.flows]
+        if self.valve is not None:
+            comes = [a + b for a, b in zip(comes, self.valve.let_through(here, pressures, T), strict=True)]
+        rows = zip(self.filled(here, length), self.grows(here, way), pressures, comes, strict=True)
         return tuple(n * (R * T * m - p * more) / V for V, more, p, m in rows)
 
     def felt(self, here: ForceTrial, length: Any) -> list[Any]:
         outside, found = here.value(self.outside), self.held(here)
-        if self.flows is None:
+        if self.is_closed:
             begun, n = here.value(None if self.length == "start" else self.length), here.value(self.exponent)
             if self.of_the_start:
                 first, second = (here.place(point)[1] for point in self.points)
@@ -342,7 +427,7 @@ class PneumaticCylinder(PressedCylinder):
 
     def potential(self, scene: LoadContext) -> Scalar | None:
         """V = sum of p_1 V_0 ((V_0/V)^(n - 1) - 1)/(n - 1) of closed chambers, and p_0 (A_1 - A_2) x."""
-        if self.flows is not None:
+        if not self.is_closed:
             return None
         n = scene.value(self.exponent)
         isothermal = scene.value_at_start(n) == 1
