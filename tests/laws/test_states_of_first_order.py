@@ -518,6 +518,14 @@ def test_a_motor_that_turns_steadily_is_linearized_about_its_speed_and_current()
     assert found.certify().ok
 
 
+def test_a_motor_that_never_rests_is_sent_to_its_steady_motion():
+    """Without a voltage to hold it at 0 the motor has no equilibrium: what would work is named."""
+    for about in ("equilibrium", "start"):
+        with pytest.raises(DerivationError) as refused:
+            eomgen.linearize(eomgen.loads(MOTOR), about=about)
+        assert 'let a steady motion be sought: about = "steady"' in str(refused.value)
+
+
 STEADY = """
 eomgen = 1
 space = "plane"

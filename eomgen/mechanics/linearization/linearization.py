@@ -446,6 +446,9 @@ def _other_rest(
                 return _with_family(first, reference) if reference.moving else reference, first
         except (DerivationError, MissingValues, NoValue, ZeroDivisionError):
             continue
+    if system.symbols.z and isinstance(why, DerivationError):
+        fix = f'{why.fix}; or let a steady motion be sought: about = "{STEADY}"'
+        raise DerivationError(why.what, why.where, fix) from why
     raise why
 
 
