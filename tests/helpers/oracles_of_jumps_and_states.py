@@ -714,3 +714,187 @@ def hexapod_leg():
         needed = acceleration(t, trial, X)[1][k]
         s = trial
         s[k] = np.sign(needed) if abs(needed) > T * (1 - 1e-9) else 0
+
+
+# -- two or three kinds in each ----------------------------------------------------------------------
+
+
+def launched_rocket() -> dict[str, float]:
+    """On its pad till the thrust of a table beats its weight; m v' = F - m g - rho/4 A |v| v, m' = -F/c."""
+    table = PchipInterpolator([0, 0.3, 0.5, 2, 3, 3.2], [0, 40, 180, 150, 120, 0])
+
+    def thrust(t):
+        return float(table(min(t, 3.2)))
+
+    def flies(t, y):
+        m = 3 + y[2]
+        return [y[1], thrust(t) / m - G - 0.6 * 0.5 * 0.008 * abs(y[1]) * y[1] / m, -thrust(t) / 2000]
+
+    t, y, _ = until(
+        lambda t, y: [0, 0, -thrust(t) / 2000], 0, 3, [0, 0, 0.3], (lambda t, y: flies(t, [0, 0, y[2]])[1], 1)
+    )
+    leaves = t
+    for end in (0.3, 0.5, 2, 3, 3.2, 6):
+        t, y, _ = until(flies, t, end, y)
+    return {"end1": leaves, "y": y[0], "y'": y[1], "p": y[2]}
+
+
+def sand_conveyor() -> dict[str, float]:
+    """The belt of the drive slips all the time: F = 2 T0 tanh(mu phi/2); sand takes q v of the conveyor."""
+    places = np.array([0, 500, 1000, 1400, 1500]) * math.pi / 30
+    motor, F = PchipInterpolator(places, [14, 18, 24, 20, 0]), 2 * 120 * math.tanh(0.35 * 2.6 / 2)
+
+    def rates(t, y):
+        drum = (0.2 * F - 60 * 0.25 - 40 * 0.25**2 * y[3]) / (0.5 + 120 * 0.25**2)
+        return [y[1], (float(motor(y[1])) - 0.06 * F) / 0.2, y[3], drum]
+
+    y = until(rates, 0, 4, np.zeros(4))[1]
+    return {"a": y[0], "a'": y[1], "b": y[2], "b'": y[3]}
+
+
+def locked_wheel() -> dict[str, float]:
+    """A brake that is pressed through a lag locks a wheel on a magic tyre with relaxation."""
+
+    def grip(k):
+        return 3500 * math.sin(1.6 * math.atan(10 * k - 0.5 * (10 * k - math.atan(10 * k))))
+
+    def rates(rolls):
+        def law(t, y):
+            _, v, _, w, k, M = y
+            spin = (-0.3 * grip(k) - M) / 1.1 if rolls else 0.0
+            return [v, grip(k) / 365, w * rolls, spin, (0.3 * w * rolls - v - abs(v) * k) / 0.15, (1500 - M) / 0.03]
+
+        return law
+
+    t, y, _ = until(rates(True), 0, 0.8, [0, 25, 0, 25 / 0.3, 0, 0], (lambda t, y: y[3], -1))
+    locks, y[3] = t, 0
+    y = until(rates(False), t, 0.8, y)[1]
+    return {"end1": locks, "x": y[0], "x'": y[1], "a": y[2], "road_kappa": y[4]}
+
+
+def door_closer() -> dict[str, float]:
+    """A cylinder that breathes through an orifice slows a door with a dry hinge, which rebounds three times."""
+    J, kinetic, static, A, V, p0, seat = 12, 1.5, 2.2, 12e-4, 40e-6, 1.013e5, np.array([-0.2, 0.3])
+
+    def reach(q):
+        B = np.array([0.3 * math.cos(q) - 0.05 * math.sin(q), 0.3 * math.sin(q) + 0.05 * math.cos(q)])
+        way = B - seat
+        return math.hypot(*way), float(way @ [-B[1], B[0]]) / math.hypot(*way)
+
+    def push(y):
+        return -15 * (y[0] + 0.3) + A * (y[2] - p0) * reach(y[0])[1]
+
+    def rates(sense):
+        def law(t, y):
+            length, arm = reach(y[0])
+            w = y[1] * bool(sense)
+            filled = 287 * 293 * 8e-9 * (p0 - y[2]) - y[2] * A * arm * w
+            return [w, (push(y) - sense * kinetic) / J * bool(sense), 1.4 / (V + A * (length - 0.05)) * filled]
+
+        return law
+
+    t, y, sense, found = 0.0, np.array([math.radians(80), 0, p0]), -1, []
+    while len(found) < 3:
+        events = (
+            [(lambda t, y: y[1], -sense), (lambda t, y: y[0], -1)]
+            if sense
+            else [(lambda t, y: static - abs(push(y)), -1)]
+        )
+        t, y, hit = until(rates(sense), t, 6, y, *events)
+        if sense and hit == 1:
+            found.append((t, -1.3 * J * y[1]))
+            y[1], sense = -0.3 * y[1], 1
+        else:
+            y[1] = 0
+            sense = int(np.sign(push(y))) if not sense or abs(push(y)) > static else 0
+    return impacts(found)
+
+
+def absorber_with_stops() -> dict[str, float]:
+    """A tuned mass with dry friction strikes the stops of its housing: P = 3/2 M m/(M + m) |v|."""
+    M, m, K, k, c, F = 10, 1, 4000, 360, 1, 0.5
+
+    def moves(sense):
+        def law(t, y):
+            pull = -k * y[2] - c * y[3] - sense * F
+            a = (30 * math.sin(19 * t) - K * y[0] - pull) / M
+            return [y[1], a, y[3], pull / m - a]
+
+        return law
+
+    def stays(t, y):
+        return [y[1], (30 * math.sin(19 * t) - K * y[0]) / (M + m), 0, 0]
+
+    def needed(t, y):
+        return m * stays(t, y)[1] + k * y[2]
+
+    t, y, sense, found = 0.0, np.zeros(4), 0, []
+    while t < 2:
+        if not sense:
+            t, y, hit = until(stays, t, 2, y, (lambda t, y: F - abs(needed(t, y)), -1))
+            sense = -int(np.sign(needed(t, y)))
+            continue
+        t, y, hit = until(moves(sense), t, 2, y, (lambda t, y: y[3], -sense), (lambda t, y: 0.025 - abs(y[2]), -1))
+        if hit == 1:
+            P = 1.5 * M * m / (M + m) * y[3]
+            found.append((t, abs(P)))
+            y[1], y[3], sense = y[1] + P / M, -0.5 * y[3], -sense
+        elif hit == 0:
+            y[3], sense = 0, -_loose_sense(needed(t, y), F)
+    return {"x": y[0], "x'": y[1], "y": y[2], "y'": y[3], **impacts(found)}
+
+
+def _loose_sense(push: float, static: float) -> int:
+    return int(_loose(push, static))
+
+
+def slipping_elevator() -> dict[str, float]:
+    """A rope slips over a braked sheave that turns the wrong way: that turns round, the rope sticks, all rests."""
+    car, weight, J, R, grip = 1200, 900, 15, 0.3, math.exp(0.12 * math.pi)
+
+    def shoe(t):
+        return 0.4 * 0.3 * 8000 * (1 - math.exp(-t / 0.05))
+
+    def slips(sense):
+        def law(t, y):
+            T = 2 * weight * G / (grip + weight / car)
+            return [y[1], (-(grip - 1) * T * R - sense * shoe(t)) / J, y[3], T / car - G]
+
+        return law
+
+    def sticks(t, y):
+        a = (-(car - weight) * G - shoe(t) / R) / (car + weight + J / R**2)
+        return [y[1], -a / R, y[3], a]
+
+    t, y, _ = until(slips(1), 0, 1.5, [0, 4, -5, 1.2], (lambda t, y: y[1], -1))
+    turns, y[1] = t, 0
+    t, y, _ = until(slips(-1), t, 1.5, y, (lambda t, y: y[3] + R * y[1], -1))
+    holds = t
+    t, y, _ = until(sticks, t, 1.5, y, (lambda t, y: y[3], -1))
+    return {"end1": turns, "end2": holds, "end3": t, "q": y[0], "y": y[2], "y'": 0.0}
+
+
+def sailing_boat() -> dict[str, float]:
+    """Sail and keel by tables of lift and drag, a hull with added mass (Kirchhoff), a rudder behind a lag."""
+    places = np.radians([-180, -90, -25, -12, 0, 12, 25, 90, 180])
+    lift = PchipInterpolator(places, [0, 0, -1.1, -1, 0, 1, 1.1, 0, 0])
+    drag = PchipInterpolator(np.radians([-180, -90, -25, 0, 25, 90, 180]), [0.02, 1.2, 0.4, 0.02, 0.4, 1.2, 0.02])
+    sail = (0.4, 1.2 * 9, np.array([0, -7]), np.array([math.cos(0.6), -math.sin(0.6)]))
+    keel = (0.2, 1000 * 0.35, np.zeros(2), np.array([1, 0]))
+
+    def rates(t, s):
+        R = np.array([[math.cos(s[2]), -math.sin(s[2])], [math.sin(s[2]), math.cos(s[2])]])
+        v, w = s[3:5], s[5]
+        F, turn = -0.5 * 1000 * 0.06 * 0.5 * math.sqrt(v @ v + 0.05**2) * v, 400 * s[6] * v[0]
+        for ahead, size, medium, chord in (sail, keel):
+            d = R @ [ahead, 0]
+            u, c = v + w * np.array([-d[1], d[0]]) - medium, R @ chord
+            alpha = math.atan2(u[0] * c[1] - u[1] * c[0], u @ c)
+            push = size / 2 * math.hypot(*u) * (lift(alpha) * np.array([-u[1], u[0]]) - drag(alpha) * u)
+            F, turn = F + push, turn + d[0] * push[1] - d[1] * push[0]
+        (x, y), (X, Y) = R.T @ v, R.T @ F
+        a = np.array([(X + 330 * w * y) / 200 - w * y, (Y - 200 * w * x) / 330 + w * x])
+        return [*v, w, *(R @ a), (turn - 130 * x * y) / 440, (0.8 * (0.2 - s[2]) - w - s[6]) / 0.3]
+
+    s = until(rates, 0, 4, [0, 0, math.radians(10), 0.5, 0, 0, 0])[1]
+    return {"x": s[0], "y": s[1], "psi": s[2], "x'": s[3], "rud": s[6]}
