@@ -44,7 +44,7 @@ def derived(symbol: str = "'A'") -> eomgen.Equations:
 
 
 @pytest.mark.slow
-@settings(derandomize=True, deadline=None, max_examples=250 if ALL else 40)
+@settings(derandomize=True, deadline=None, max_examples=250 if ALL else 80)
 @given(st.lists(st.sampled_from(TOKENS), min_size=1, max_size=12).map("".join))
 def test_what_is_let_in_is_a_symbol_for_whoever_sets_it(text):
     """It is read once more as the same, its braces close, its commands are few; matplotlib draws it."""

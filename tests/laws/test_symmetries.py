@@ -14,6 +14,7 @@ from random import Random
 
 import numpy as np
 import pytest
+from derivations import loaded
 from slow_run import sampled, usual, usual_models
 from transformed_models import (
     SCALES,
@@ -42,7 +43,7 @@ def with_motion() -> Iterable[Path]:
     """The models that move freely, with values of all their parameters."""
     for path in usual_models(sorted(MODELS.rglob("*.toml"))):
         if "coordinates" in tables_of(path):
-            model = eomgen.load(path)
+            model = loaded(path)  # what other files of this process have read
             free = any(not (part.driven or part.dependent) for part in model.coordinates.values())
             if free and model.exact_parameters().keys() == model.parameters.keys():
                 yield path
