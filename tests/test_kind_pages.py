@@ -95,7 +95,7 @@ def test_no_example_is_left_over():
 def test_every_field_is_explained(kind):
     """By the docstrings of the class and its bases, and by its rule; its first line says what it is."""
     cls = kinds.class_of(kind)
-    known = reference.meanings(cls)
+    known = cls.meanings()
     assert not [slot.key for slot in cls.slots() if not known.get(slot.name)]
     assert all(reference.value_of(slot.rule) for slot in cls.slots())
     assert reference.gist(cls)

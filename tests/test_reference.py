@@ -109,7 +109,7 @@ def test_a_table_that_was_changed_by_hand_is_found():
 @each("cls", sorted({*reference.TABLES.values(), *reference.BASES.values()}, key=lambda cls: cls.__name__))
 def test_every_key_of_a_table_is_explained(cls):
     """By the docstring of the class that reads it, and by its rule."""
-    known = reference.meanings(cls)
+    known = cls.meanings()
     assert not [slot.key for slot in cls.slots() if not known.get(slot.name)]
     assert all(reference.value_of(slot.rule) for slot in cls.slots())
 

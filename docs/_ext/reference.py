@@ -58,7 +58,7 @@ from eomgen.model.kinds import (  # noqa: E402
     Wrap,
 )
 from eomgen.model.model import Model  # noqa: E402
-from eomgen.model.part import PartRule, SeamRule, Slot, meanings  # noqa: E402
+from eomgen.model.part import PartRule, SeamRule, Slot  # noqa: E402
 from eomgen.model.parts import (  # noqa: E402
     Body,
     Coordinate,
@@ -327,7 +327,7 @@ def field_row(slot: Slot, meaning: str) -> str:
 
 def fields_table(cls: type[Any]) -> str:
     """All fields, those that every such part has last."""
-    known, own = meanings(cls), inspect.get_annotations(cls)
+    known, own = cls.meanings(), inspect.get_annotations(cls)
     slots = sorted(cls.slots(), key=lambda slot: slot.name not in own)
     rows = [field_row(slot, known.get(slot.name, "")) for slot in slots]
     return "\n".join([row("key", "default", "value", "meaning"), row(*["---"] * 4), *rows])

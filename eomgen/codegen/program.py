@@ -20,7 +20,7 @@ from eomgen.codegen.statements import INT, Table
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion
-from eomgen.symbolic.exact import PlaceLists, Zeros, factorization
+from eomgen.symbolic.exact import Zeros, factorization
 from eomgen.symbolic.expression import Count, Node, Scalar, ScalarRow, Symbols, order, substituted
 
 UNROLLED_AT_MOST = 1000  # operations of a factorization written out; a dense one of n = 12 takes 914
@@ -108,7 +108,7 @@ class Solve:
         return _ordered(equations.M, equations.J, right, symbols.a + symbols.lam, equations.alike)
 
 
-def _joined(name: str, begin: str, ways: Sequence[PlaceLists]) -> tuple[Table, Table]:
+def _joined(name: str, begin: str, ways: Sequence[tuple[tuple[int, ...], ...]]) -> tuple[Table, Table]:
     """The lists of both ways as one, and where each begins; of each way where its last one ends too."""
     found: list[int] = []
     starts: list[int] = []

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, Protocol
 
 from eomgen.documents.bounded import page
 from eomgen.documents.document import notation_of
@@ -35,7 +35,7 @@ from eomgen.mechanics.constraints import Rank, Row
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import BodyEnergy, BodyLink, Scope
 from eomgen.mechanics.start import ExactStart
-from eomgen.model import STATEMENT, Coordinate, Input, Model, Output, Parameter, PointForce, StateVariable
+from eomgen.model import STATEMENT, Coordinate, Model, Output, PointForce, Unit
 from eomgen.symbolic.expression import Expression, Graph, Node, Scalar, Vector, is_zero
 from eomgen.symbolic.print import to_text
 
@@ -198,9 +198,15 @@ def _gap_name(row: Row) -> Name:
 
 PARAMETERS = ("parameter", "meaning", "unit", "value")
 COORDINATES = ("coordinate", "meaning", "unit", "start")
-Quantified = Parameter | Coordinate | StateVariable | Input | None
 MOST_VALUES = 8  # of a table, that are printed
 INPUTS = ("input", "meaning", "unit", "value")
+
+
+class Quantified(Protocol):
+    """A parameter, coordinate, state or input, in the unit that the user gave it."""
+
+    @property
+    def unit(self) -> Unit | None: ...
 
 
 def setting_steps(system: System) -> tuple[Step, ...]:
@@ -272,11 +278,11 @@ def open_at_rest(system: System) -> list[Statement]:
     return [prose(f"Open at rest, without a force: {', '.join(names)}.")] if names else []
 
 
-def _unit(part: Quantified) -> str:
+def _unit(part: Quantified | None) -> str:
     return "" if part is None or part.unit is None else str(part.unit)
 
 
-def _in_unit(value: Any, part: Quantified) -> str:
+def _in_unit(value: Any, part: Quantified | None) -> str:
     """A value in the unit in which the user gave it."""
     if value is None:
         return ""
@@ -477,7 +483,7 @@ def _start(part: Coordinate, expression: Expression | None, values: Mapping[str,
     return start_shown(expression, values, part)
 
 
-def start_shown(expression: Expression, values: Mapping[str, Any], part: Quantified) -> str:
+def start_shown(expression: Expression, values: Mapping[str, Any], part: Quantified | None) -> str:
     """A value in the unit of a coordinate, else in SI; an expression of parameters without values as text."""
     if expression.names <= values.keys() | {"pi"}:
         return _in_unit(expression.evaluate({**values, "pi": math.pi}), part)

@@ -14,15 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from eomgen.errors import EomgenError, ModelError, Problem, ToolMissing
 from eomgen.frozen import dataclass
-from eomgen.model import (
-    FUNCTIONS,
-    Cursor,
-    Model,
-    WrittenText,
-    loads,
-    meanings,
-    warned,
-)
+from eomgen.model import FUNCTIONS, Cursor, Model, WrittenText, loads, warned
 from eomgen.symbolic.expression import NAMES
 from eomgen.version import __version__
 
@@ -252,7 +244,7 @@ def about(cls: type[Any]) -> str:
 
 def field_meaning(cls: type[Any], field: str) -> str:
     """The meaning of a field, as the reference has it."""
-    return re.sub(r"\bNone\b", "left out", meanings(cls).get(field, ""))
+    return re.sub(r"\bNone\b", "left out", cls.meanings().get(field, ""))
 
 
 def _signature(name: str) -> str:

@@ -3,9 +3,6 @@
 # A body made of pieces: its mass, mass centre and inertia about it, body axes
 from eomgen.model.composite import Composite as Composite
 
-# A constraint between bodies, or between coordinates
-from eomgen.model.constraints.base import Constraint as Constraint
-
 # Two things that touch
 from eomgen.model.constraints.base import Meeting as Meeting
 
@@ -107,29 +104,14 @@ from eomgen.model.outputs.base import OutputSource as OutputSource
 # The argument k of a call, a formula; a lone name or member reads like a reference
 from eomgen.model.outputs.base import formula_at as formula_at
 
-# Field of a part -> its meaning, by the docstring of its class
-from eomgen.model.part import meanings as meanings
-
-# A rigid body: its mass (`shape`; or `mass`, `center`, `inertia`; or `mass` and `parts`), its points, its joint
-from eomgen.model.parts import Body as Body
-
 # A generalized coordinate q
 from eomgen.model.parts import Coordinate as Coordinate
-
-# Kinematics at one instant: known velocities and accelerations as equations
-from eomgen.model.parts import Given as Given
-
-# A known function of time that a caller may replace
-from eomgen.model.parts import Input as Input
 
 # A requested result, by name
 from eomgen.model.parts import Output as Output
 
 # A constant of the system
 from eomgen.model.parts import Parameter as Parameter
-
-# A state of first order: a current, a pressure, a temperature, an integral, z' = `rate`
-from eomgen.model.parts import StateVariable as StateVariable
 
 # The name in messages of a body of a model in parts: body 'bar', node 'T.n1'
 from eomgen.model.parts import called as called

@@ -15,13 +15,7 @@ from eomgen.model.constraints.link import Members, trusses_of
 from eomgen.model.contacts import Connections
 from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.expansion import PartsRule, Repetition, RepetitionRule
-from eomgen.model.fields import (
-    Leaf,
-    ListRule,
-    Table,
-    TableRule,
-    TextRule,
-)
+from eomgen.model.fields import Leaf, ListRule, Table, TableRule, TextRule, WrittenEquation
 from eomgen.model.forces import Force
 from eomgen.model.kinds import (
     Paragraphs,
@@ -177,6 +171,13 @@ class Model(Numbers, Connections, UnitsOfNames, Part):
         """
         return replace(self, outputs=Table(outputs), text=None, questions=None)
 
+    def with_given_velocities(self, equations: tuple[WrittenEquation, ...]) -> "Model":
+        """The model with these velocities given in addition, checked as a whole."""
+        if not equations:
+            return self
+        own = self.given or Given.of_values({})
+        return replace(self, given=own.altered(velocity=(*(own.velocity or ()), *equations)))
+
     @property
     def functions(self) -> dict[str, TableFunction]:
         """The functions that tables declare, and their derivatives: M, M', M''."""
@@ -213,6 +214,12 @@ class Model(Numbers, Connections, UnitsOfNames, Part):
     def expressions(self) -> tuple[tuple[Leaf, Expression], ...]:
         """Every expression of the model, with the value in which it stands."""
         return Catalog(self, ()).expressions
+
+    @property
+    def assumed_by_constraints(self) -> tuple[str, ...]:
+        """Sentences that state what is assumed by constraints that nobody declared."""
+        sentences = (constraint.assumption(name) for name, constraint in self.constraints.items())
+        return tuple(filter(None, sentences))
 
     @property
     def dimensions(self) -> Inferred:

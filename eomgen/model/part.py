@@ -127,6 +127,14 @@ class Part:
         return _slots_of(own)
 
     @classmethod
+    def meanings(cls) -> dict[str, str]:
+        """Field -> its meaning, by the docstrings of the class and of its bases; the nearest counts."""
+        found: dict[str, str] = {}
+        for base in reversed(cls.__mro__):
+            found |= dict(_entries(cleandoc(base.__doc__ or "")))
+        return found
+
+    @classmethod
     def made(cls) -> dict[str, Any]:
         """{field that no user gives: its default}"""
         own: Any = cls
@@ -375,14 +383,6 @@ def _with_inline(table: dict[str, Any], members: tuple[Any, ...], definitions: d
 
 
 _ENTRY = re.compile(r"^(\w[\w, ]*): (.*)$")
-
-
-def meanings(cls: Any) -> dict[str, str]:
-    """Field -> its meaning, by the docstrings of the class and of its bases; the nearest counts."""
-    found: dict[str, str] = {}
-    for base in reversed(cls.__mro__):
-        found |= dict(_entries(cleandoc(base.__doc__ or "")))
-    return found
 
 
 def _entries(text: str) -> Iterator[tuple[str, str]]:

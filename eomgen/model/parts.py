@@ -269,6 +269,13 @@ class Body(Part):
     symbol: SymbolField | None = None
 
     @property
+    def may_be_massless(self) -> bool:
+        """True if no mass is given, or one that is 0."""
+        masses = [self.mass, getattr(self.shape, "mass", None)]
+        given = [x for x in masses if x is not None]
+        return not self.parts and (not given or any(x.literal == 0 for x in given))
+
+    @property
     def shapes(self) -> tuple[Shape, ...]:
         """Its shape, or those of its parts."""
         own = () if self.shape is None else (self.shape,)

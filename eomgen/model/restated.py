@@ -17,17 +17,7 @@ from eomgen.model.kinds import Coordinates, ValueOf
 from eomgen.model.model import Model
 from eomgen.model.part import Part, PartRule
 from eomgen.model.parts import Body, Coordinate, in_parts
-from eomgen.symbolic.expression import (
-    Call,
-    Expression,
-    Instruction,
-    Matrix,
-    Pose,
-    Reference,
-    Vector,
-    cos,
-    sin,
-)
+from eomgen.symbolic.expression import Call, Expression, Matrix, Pose, Reference, Vector, cos, sin
 
 # -------- driven -----------------------------------------------------------------------------------------------
 # Model, laws of inputs over the state -> the model in which they stand in place of the inputs: feedback.
@@ -77,7 +67,7 @@ def _expression(formula: Expression, laws: Laws) -> Expression:
     """A formula in which a law stands for each of its names."""
     if laws.keys().isdisjoint(formula.names):
         return formula
-    code: list[Instruction] = []
+    code: list[tuple[str, Any]] = []
     columns: list[int] = []
     for (kind, what), column in zip(formula.code, formula.columns, strict=True):
         law = laws.get(what) if kind == "name" else None

@@ -33,7 +33,7 @@ from eomgen.documents import (
 from eomgen.errors import RunFailed, ToolMissing, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.linearization import Mode, Modes
+from eomgen.mechanics.linearization import Modes
 from eomgen.model import nearest
 from eomgen.scene import (
     Drawing,
@@ -450,14 +450,19 @@ def mode_movies(modes: Modes, count: int, frames: int) -> list[Movie]:
     reference = modes.small.reference
     if not reference.valued:
         raise UsageError("modes are shown with values of all parameters", fix="give them values in [parameters]")
-    shown = [mode for mode in modes.spectrum.modes if mode.frequency][:count]
+    shown = len(_swinging(modes)[:count])
     if not shown:
         raise UsageError("the model has no mode that swings", fix="show a run: leave the mode out")
-    return [_mode_movie(modes, mode, k, frames) for k, mode in enumerate(shown, start=1)]
+    return [_mode_movie(modes, k, frames) for k in range(1, shown + 1)]
 
 
-def _mode_movie(modes: Modes, mode: Mode, number: int, count: int) -> Movie:
-    """q = q_0 + a Re(shape e^(i phase)) over one turn of the phase."""
+def _swinging(modes: Modes) -> list[Any]:
+    return [mode for mode in modes.spectrum.modes if mode.frequency]
+
+
+def _mode_movie(modes: Modes, number: int, count: int) -> Movie:
+    """q = q_0 + a Re(shape e^(i phase)) of the mode of this number over one turn of the phase."""
+    mode = _swinging(modes)[number - 1]
     system = modes.small.reference.system
     scene = scene_of_system(system)
     at = StateInNumbers.of(system, modes.small.reference.numbers)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.codegen import Program, RightHandSide
-from eomgen.errors import DerivationError, EomgenError, NotYet, RunFailed
+from eomgen.errors import DerivationError, EomgenError, NotYet
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.linearization import CORNERS
@@ -20,8 +20,7 @@ from eomgen.model import Model, Requests, model_at
 from eomgen.pipeline import simulator
 from eomgen.proof import Certificate, Check, checked, unchecked
 from eomgen.questions import solve
-from eomgen.resources import check_patience
-from eomgen.simulation import solver_of, step
+from eomgen.simulation import states_along
 from eomgen.study import Study
 from eomgen.symbolic.expression import Expression, Node, Scalar, depends_on, order, substituted, tangent
 from eomgen.symbolic.numeric import evaluate, fifty_digits, floats_of, tolerances
@@ -81,7 +80,7 @@ def changing_run(
     rows = [*rates, *(d for seeds in along.values() for d in tangent(rates, seeds))]
     f, p = RightHandSide.of(Program.of(rows, extended)), RightHandSide.parameter_values(system.scope.model)
     x0 = np.concatenate([start[0], *(start[1][name] for name in changes)])
-    states = _integrated(f.at(p), x0, instants, system.scope.model.breakpoints)
+    states = states_along(f.at(p), x0, instants, system.scope.model.breakpoints)
     inputs = _own_inputs(system)
     closed = substituted([phase.of_state(formula) for formula in formulas.values()], inputs)
     requested = [*closed, *(d for seeds in along.values() for d in tangent(closed, seeds))]
@@ -115,26 +114,6 @@ def _refuse_jumps(system: System, rates: Sequence[Scalar]) -> None:
             "a force jumps along the way: the variational equations do not hold across it",
             fix="take differences of two runs: a sweep over the parameter",
         )
-
-
-def _integrated(f, x0: np.ndarray, instants: np.ndarray, breakpoints: Sequence[float]) -> np.ndarray:  # type: ignore[no-untyped-def]
-    """The states at the instants, k x n.
-
-    Raises:
-        RunFailed: the motion ends before.
-    """
-    end = float(instants[-1])
-    found = [x0 for t in instants if t <= 0]
-    solver = solver_of("DOP853", f, (0.0, end), x0, rtol=tolerances.FINE_RUN, atol=tolerances.FINE_RUN)
-    while len(found) < len(instants):
-        check_patience()
-        step(solver, breakpoints, end)
-        if solver.status == "failed":
-            raise RunFailed(f"the motion cannot be followed beyond t = {solver.t:.6g} s", fix="a shorter run")
-        dense = solver.dense_output()
-        while len(found) < len(instants) and instants[len(found)] <= solver.t:
-            found.append(dense(instants[len(found)]))
-    return np.array(found)
 
 
 # -------- at a state ------------------------------------------------------------------------------------------

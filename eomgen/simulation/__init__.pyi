@@ -63,11 +63,8 @@ from eomgen.simulation.result import Trajectory as Trajectory
 # Accuracy of the states of a run
 from eomgen.simulation.solvers import Accuracy as Accuracy
 
-# An integrator at its start
-from eomgen.simulation.solvers import solver_of as solver_of
-
-# One step of an integrator, to the next breakpoint at the latest; it goes on until the end
-from eomgen.simulation.solvers import step as step
+# The states of a smooth motion at instants, k x n, by steps of fine tolerance
+from eomgen.simulation.solvers import states_along as states_along
 
 # Outputs of a whole motion
 from eomgen.simulation.whole_run import WholeRun as WholeRun

@@ -15,7 +15,9 @@ from typing import Any
 
 import numpy as np
 
+from eomgen.errors import RunFailed
 from eomgen.frozen import dataclass
+from eomgen.resources import check_patience
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.numeric import tolerances
 
@@ -111,6 +113,29 @@ def solver_of(
     if method == EXPLICIT[0]:
         solver.dense_output = partial(_accurate_between, solver, solver.dense_output)
     return solver
+
+
+def states_along(f: StateRate, x0: np.ndarray, instants: np.ndarray, breakpoints: Sequence[float]) -> np.ndarray:
+    """The states of a smooth motion at instants, k x n, by steps of fine tolerance.
+
+    Args:
+        instants: ascending; states at 0 and before are those of the start.
+        breakpoints: instants across which no step goes.
+    Raises:
+        RunFailed: the motion ends before.
+    """
+    end = float(instants[-1])
+    found = [x0 for t in instants if t <= 0]
+    solver = solver_of("DOP853", f, (0.0, end), x0, rtol=tolerances.FINE_RUN, atol=tolerances.FINE_RUN)
+    while len(found) < len(instants):
+        check_patience()
+        step(solver, breakpoints, end)
+        if solver.status == "failed":
+            raise RunFailed(f"the motion cannot be followed beyond t = {solver.t:.6g} s", fix="a shorter run")
+        dense = solver.dense_output()
+        while len(found) < len(instants) and instants[len(found)] <= solver.t:
+            found.append(dense(instants[len(found)]))
+    return np.array(found)
 
 
 def put_state(solver: Any, x: np.ndarray) -> None:

@@ -9,7 +9,7 @@ from functools import cached_property
 from eomgen.errors import DerivationError, MissingValues, ModelError, Problem
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Freedom
-from eomgen.mechanics.dynamics import System, WellPosed, assembled_by_recursion, reported_of_nodes
+from eomgen.mechanics.dynamics import System, WellPosed, assembled_by_recursion
 from eomgen.mechanics.free_bodies import Structure
 from eomgen.mechanics.instant import InstantKinematics
 from eomgen.mechanics.kinematics import ContactMode, ContactModes, Motion, Scope, SystemScene
@@ -91,7 +91,7 @@ class Checked:
     @property
     def nodes(self) -> tuple[str, ...]:
         """Assumptions about massless nodes, in words."""
-        return reported_of_nodes(self.model)
+        return self.model.assumed_by_constraints
 
     @property
     def driven(self) -> list[str]:

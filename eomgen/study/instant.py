@@ -20,7 +20,7 @@ from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies import Balance, CutForce, ForceKind, NamedReaction
 from eomgen.mechanics.instant import Centrodes, InstantKinematics, KinematicState
 from eomgen.mechanics.start import Start
-from eomgen.model import AtRest, Given, Model, Requests, WrittenEquation
+from eomgen.model import AtRest, Model, Requests, WrittenEquation
 from eomgen.simulation import ReactionColumns
 from eomgen.study.motion import MotionFromStart, StateAtInstant, StateInNumbers
 from eomgen.study.study import Study, exact_numbers, study_at_rest, study_of, study_of_modes
@@ -62,7 +62,7 @@ def kinematic_state(
         UsageError: an instant of a model that has no motion in time.
         DerivationError: nothing can move; more than one rate is missing; given velocities contradict one another.
     """
-    model = _with_given(model, tuple(Requests(model).equation(text) for text in given))
+    model = model.with_given_velocities(tuple(Requests(model).equation(text) for text in given))
     at = None if at is None else Requests(model).equation(at)
     if model.given is None and (model.coordinates or at is not None):
         return _on_the_way(model, at)
@@ -72,14 +72,6 @@ def kinematic_state(
             fix="leave --at out, or move the model by coordinates",
         )
     return _of_instant_kinematics(model)
-
-
-def _with_given(model: Model, equations: tuple[WrittenEquation, ...]) -> Model:
-    """Model with these given velocities added, checked as a whole."""
-    if not equations:
-        return model
-    own = model.given or Given.of_values({})
-    return replace(model, given=own.altered(velocity=(*(own.velocity or ()), *equations)))
 
 
 # -- one configuration, given velocities -------------------------------------------------------------

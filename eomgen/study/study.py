@@ -34,7 +34,6 @@ from eomgen.mechanics.dynamics import (
     System,
     WellPosed,
     assembled_by_recursion,
-    reported_of_nodes,
     with_accelerations,
     with_nodes_balanced,
 )
@@ -106,7 +105,7 @@ class Study:
     @property
     def assumptions(self) -> tuple[str, ...]:
         """Assumptions about massless nodes and contacts."""
-        return (*reported_of_nodes(self.model), *self.of_contacts)
+        return (*self.model.assumed_by_constraints, *self.of_contacts)
 
     @cached_property
     def derived(self) -> EquationsOfMotion:

@@ -6,9 +6,6 @@ from eomgen.mechanics.constraints.assembly import Assembly as Assembly
 # A position in which branches meet
 from eomgen.mechanics.constraints.assembly import Fork as Fork
 
-# The constraints whose scalars ought to be zero and are not
-from eomgen.mechanics.constraints.assembly import open_at as open_at
-
 # |x|, where it is more than rounding: against its terms, and against what the symbols would have to move
 from eomgen.mechanics.constraints.assembly import open_by as open_by
 from eomgen.mechanics.constraints.closure import CLOSING as CLOSING

@@ -79,6 +79,15 @@ class Assembly:
             raise DerivationError(what, f"coordinates.{left[0].name}", "give the parameters values")
         return exact | {q: Fraction(str(states[0][q])) for q in left}
 
+    def opened(
+        self, pairs: Iterable[tuple[Row, Scalar | None]], symbols: Sequence[Node], state: State
+    ) -> tuple[Constraints, tuple[str, ...]]:
+        """(the constraints that stay, those of them of which a scalar ought to be zero and is not)."""
+        named = ((row, x) for row, x in pairs if x is not None)
+        apart = tuple(dict.fromkeys(row.constraint for row, x in named if open_by(x, symbols, state)))
+        staying = self.that_stay(apart)
+        return staying, tuple(name for name in apart if any(row.constraint == name for row in staying.rows))
+
     def with_gaps_closed(self, state: State, called: frozenset[str]) -> tuple[State, tuple[str, ...]]:
         """(the nearest state in which positions agree with the constraints, the constraints that did not hold).
 
@@ -86,9 +95,8 @@ class Assembly:
             called: coordinates whose start a person typed, or a caller gave: these are moved last.
         """
         scope = self.constraints.motion.scope
-        apart = open_at(((row, row.gap) for row in self.constraints.rows if not row.identical), scope.symbols.q, state)
-        staying = self.that_stay(apart)
-        opened = tuple(name for name in apart if any(row.constraint == name for row in staying.rows))
+        pairs = ((row, row.gap) for row in self.constraints.rows if not row.identical)
+        staying, opened = self.opened(pairs, scope.symbols.q, state)
         if not opened:
             return state, ()
         standing, sought = set(symbols_of(staying.gaps)), self.constraints.fixed_by_position
@@ -179,12 +187,6 @@ def _differs(declared: Scalar, q: Node, state: State) -> bool:
     """True if a coordinate differs from its declared start."""
     before = float(evaluate((declared,), state, fifty_digits())[0])
     return abs(float(state[q]) - before) > tolerances.COMPUTED * (1 + abs(before))
-
-
-def open_at(pairs: Iterable[tuple[Row, Scalar | None]], symbols: Sequence[Node], state: State) -> tuple[str, ...]:
-    """The constraints whose scalars ought to be zero and are not."""
-    named = ((row, x) for row, x in pairs if x is not None)
-    return tuple(dict.fromkeys(row.constraint for row, x in named if open_by(x, symbols, state)))
 
 
 def open_by(x: Scalar, symbols: Sequence[Node], state: State) -> float:

@@ -31,9 +31,6 @@ from eomgen.mechanics.dynamics.formulations import inverse_residual as inverse_r
 # M by composite bodies, armatures included
 from eomgen.mechanics.dynamics.formulations import mass as mass
 
-# Sentences that state the assumption of such a model
-from eomgen.mechanics.dynamics.formulations import reported_of_nodes as reported_of_nodes
-
 # The model with the balance of every massless node as a constraint, from which its coordinate follows
 from eomgen.mechanics.dynamics.formulations import with_nodes_balanced as with_nodes_balanced
 

@@ -10,7 +10,7 @@ from eomgen.frozen import dataclass, recalled
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, assembled
 from eomgen.mechanics.dynamics.tree import Branch, applied_wrenches, bias_forces, branches_of, composite_mass_matrix
 from eomgen.mechanics.kinematics import Loads, Motion, SystemInertia
-from eomgen.model import Body, Coordinate, Model, NodeBalance, Table
+from eomgen.model import Coordinate, Model, NodeBalance, Table
 from eomgen.symbolic.expression import (
     Node,
     Scalar,
@@ -346,7 +346,6 @@ def derived_by(method: str, system: System) -> EquationsOfMotion:
 # equations.
 
 
-PREFIX = "balance_of_"  # of a constraint, before its coordinate
 LONGEST = 2_000  # characters of a balance that stands as an equation
 
 
@@ -356,23 +355,16 @@ def with_nodes_balanced(model: Model) -> Model:
     return recalled(model, with_nodes_balanced, lambda: _balanced(model))
 
 
-def reported_of_nodes(model: Model) -> tuple[str, ...]:
-    """Sentences that state the assumption of such a model."""
-    constraints = [name for name, constraint in model.constraints.items() if isinstance(constraint, NodeBalance)]
-    follows = "moves no mass: it follows from the balance of what pushes it"
-    return tuple(f"{name.removeprefix(PREFIX)} {follows} ({name})" for name in constraints)
-
-
 def _balanced(model: Model) -> Model:
     free = [name for name, q in model.coordinates.items() if not (q.driven or q.dependent)]
-    if not free or model.speeds or model.unknowns or not any(map(_is_lean, model.bodies.values())):
+    if not free or model.speeds or model.unknowns or not any(body.may_be_massless for body in model.bodies.values()):
         return model
     try:
         equations = assembled_by_recursion(System.free_of(model))
         found = dict(_balances(equations, free))
         if not found:
             return model
-        constraints = {PREFIX + name: constraint for name, constraint in found.items()}
+        constraints = {NodeBalance.PREFIX + name: constraint for name, constraint in found.items()}
         moved = {name: _following(model.coordinates[name], constraint) for name, constraint in found.items()}
         return replace(
             model,
@@ -381,13 +373,6 @@ def _balanced(model: Model) -> Model:
         )
     except (ModelError, DerivationError):  # whoever needs accelerations says what is missing
         return model
-
-
-def _is_lean(body: Body) -> bool:
-    """True if a body may have no mass: none is given, or one that is 0."""
-    masses = [body.mass, getattr(body.shape, "mass", None)]
-    given = [x for x in masses if x is not None]
-    return not body.parts and (not given or any(x.literal == 0 for x in given))
 
 
 def _following(coordinate: Coordinate, constraint: NodeBalance) -> Coordinate:

@@ -17,7 +17,7 @@ from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies.balance import Balance
 from eomgen.mechanics.free_bodies.names_of_reactions import is_named_alone
 from eomgen.mechanics.free_bodies.wrenches import Axes, Component, Effect, effects_at_joint, rotors_of
-from eomgen.mechanics.kinematics import BodyLink, JointEffort, pushed_along
+from eomgen.mechanics.kinematics import BodyLink, JointEffort
 from eomgen.model import Couple, Element, PointForce
 from eomgen.symbolic.expression import Matrix, Scalar, Vector, is_zero, substituted
 
@@ -160,7 +160,7 @@ def _efforts(balance: Balance) -> Iterator[CutForce]:
         for effort in (effort for effort in system.loads.efforts if effort.body == link.name):
             for kind, size in _shares_of(system, link, effort):
                 if not is_zero(size):
-                    effects = effects_at_joint(axes, link, *pushed_along(link, effort.variable, size))
+                    effects = effects_at_joint(axes, link, *link.pushed_along(effort.variable, size))
                     yield from _given(axes, effects, f"{kind}({link.name})", kind)
         yield from _given(axes, rotors_of(axes, link), f"rotor({link.name})", ForceKind.INERTIA)
 

@@ -17,7 +17,7 @@ from eomgen.mechanics.free_bodies.velocity_plan import (
 )
 from eomgen.mechanics.free_bodies.wrenches import Axes, Component, Effect
 from eomgen.mechanics.start import ExactStart
-from eomgen.model import BodyPoint, Constraint, declared_at
+from eomgen.model import BodyPoint, declared_at
 from eomgen.symbolic.exact import LinearSystem, Pivots, Solution, readable_all
 from eomgen.symbolic.expression import (
     Node,
@@ -374,16 +374,10 @@ def _hangs(structure: Structure, plan: VelocityPlan) -> bool:
     system = structure.system
     constraints = system.scope.model.constraints
     ropes = [
-        row
-        for row in system.constraints.rows
-        if row.component == "tension" and _only_pulls(constraints[row.constraint])
+        row for row in system.constraints.rows if row.component == "tension" and constraints[row.constraint].only_pulls
     ]
     pulled = {body for row in ropes for body, _ in row.wrenches}
     return set(plan.moving) <= pulled
-
-
-def _only_pulls(constraint: Constraint) -> bool:
-    return bool(constraint.strand_rows()) or bool(getattr(constraint, "unilateral", False))
 
 
 def _culprit(plan: VelocityPlan) -> str:

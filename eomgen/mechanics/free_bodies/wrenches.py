@@ -18,7 +18,6 @@ from eomgen.mechanics.kinematics import (
     JointEffort,
     Motion,
     SystemInertia,
-    pushed_along,
 )
 from eomgen.model import BodyPoint, Couple, MassProperties, PointForce
 from eomgen.symbolic.expression import (
@@ -186,13 +185,13 @@ def rotors_of(axes: Axes, link: BodyLink) -> list[Effect]:
     effects: list[Effect] = []
     for k, armature in _armatures(axes.motion, link):
         rate = axes.motion.scope.with_accelerations((link.s_rate[k],))[0]
-        effects += effects_at_joint(axes, link, *pushed_along(link, k, -armature * rate))
+        effects += effects_at_joint(axes, link, *link.pushed_along(k, -armature * rate))
     return effects
 
 
 def _effort_effects(axes: Axes, effort: JointEffort) -> list[Effect]:
     link = axes.motion.link(effort.body)
-    return effects_at_joint(axes, link, *pushed_along(link, effort.variable, effort.effort))
+    return effects_at_joint(axes, link, *link.pushed_along(effort.variable, effort.effort))
 
 
 def _armatures(motion: Motion, link: BodyLink) -> list[tuple[int, Scalar]]:
@@ -316,7 +315,7 @@ def _joint_components(system: System, axes: Axes) -> list[Component]:
             found.append(Component(link.name, "joint", label, len(pushes) + 1, along, bilateral_friction=factor))
         for k in range(len(link.s)):
             if (driver := driven.get((link.name, k))) is not None:
-                effects = tuple(effects_at_joint(axes, link, *pushed_along(link, k, 1)))
+                effects = tuple(effects_at_joint(axes, link, *link.pushed_along(k, 1)))
                 found.append(Component(link.name, "drive", "drive", k + 1, effects, (), driver))
     return found
 
@@ -672,7 +671,7 @@ def _along(axes: Axes, link: BodyLink, way: SparseRow) -> list[Effect]:
     """Effects of the wrench sum c_k d_k."""
     force, couple = Vector.ZERO, Vector.ZERO
     for k, c in way.items():
-        f, n = pushed_along(link, k, c)
+        f, n = link.pushed_along(k, c)
         force, couple = force + f, couple + n
     return effects_at_joint(axes, link, force, couple)
 

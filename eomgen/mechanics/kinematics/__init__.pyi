@@ -44,9 +44,6 @@ from eomgen.mechanics.kinematics.scene import ContactModes as ContactModes
 # Quantities of a system in motion from which force laws and constraints are built
 from eomgen.mechanics.kinematics.scene import SystemScene as SystemScene
 
-# Force and couple along a joint's variable that do the work of a magnitude times its rate
-from eomgen.mechanics.kinematics.scene import pushed_along as pushed_along
-
 # The symbols of a model and its kinematic equations
 from eomgen.mechanics.kinematics.symbols import Scope as Scope
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
@@ -97,10 +97,42 @@ class BodyLink:
             return Vector((0, 0, rates[0]))
         return spin_between(self.pose.R, Matrix.of((rates[0:3], rates[3:6], rates[6:9])))
 
+    def pushed_along(self, variable: int, magnitude: Scalar) -> tuple[Vector, Vector]:
+        """(force, couple) along a joint's variable that do the work magnitude * s', child's axes, and none on others.
+
+        They lie in the span of the joint's axes: d_k . S_j = 1 of j = k, else 0.
+        """
+        w, v = self.S[variable]
+        turning = not all(is_zero(x) for x in w)
+        others = [
+            column[0 if turning else 1]
+            for j, column in enumerate(self.S)
+            if j != variable and turning != all(is_zero(x) for x in column[0])
+        ]
+        push = _without_work(magnitude, w if turning else v, others)
+        return (Vector.ZERO, push) if turning else (push, Vector.ZERO)
+
     @property
     def is_placed(self) -> bool:
         """True if a body stands where the model places it, without a joint that carries a reaction."""
         return self.joint is None or not self.joint.carries_reaction
+
+
+def _without_work(magnitude: Scalar, n: Vector, others: Sequence[Vector]) -> Vector:
+    """The vector d in the span of n and the others with d . n = magnitude that is normal to the others."""
+    if all(is_zero(n @ other) for other in others):
+        return _over(magnitude, n @ n) * n
+    if len(others) == 1:
+        (other,) = others
+        d = other @ other * n - n @ other * other
+    else:
+        d = others[0].cross(others[1])
+    found: Vector = _over(magnitude, n @ d) * d
+    return found
+
+
+def _over(magnitude: Scalar, square: Scalar) -> Scalar:
+    return magnitude if type(square) is int and square == 1 else over(magnitude, square)
 
 
 @dataclass(frozen=True)

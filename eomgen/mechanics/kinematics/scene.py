@@ -41,38 +41,6 @@ from eomgen.symbolic.numeric import FLOAT, Work, evaluate
 # -------- pushes along joints ---------------------------------------------------------------------------------
 
 
-def pushed_along(link: BodyLink, variable: int, magnitude: Scalar) -> tuple[Vector, Vector]:
-    """(force, couple) along a joint's variable that do the work magnitude * s', child's axes, and none on its others.
-
-    They lie in the span of the joint's axes: d_k . S_j = 1 of j = k, else 0.
-    """
-    w, v = link.S[variable]
-    turning = not all(is_zero(x) for x in w)
-    others = [
-        column[0 if turning else 1]
-        for j, column in enumerate(link.S)
-        if j != variable and turning != all(is_zero(x) for x in column[0])
-    ]
-    push = _without_work(magnitude, w if turning else v, others)
-    return (Vector.ZERO, push) if turning else (push, Vector.ZERO)
-
-
-def _without_work(magnitude: Scalar, n: Vector, others: Sequence[Vector]) -> Vector:
-    """The vector d in the span of n and the others with d . n = magnitude that is normal to the others."""
-    if all(is_zero(n @ other) for other in others):
-        return _over(magnitude, n @ n) * n
-    if len(others) == 1:
-        (other,) = others
-        d = other @ other * n - n @ other * other
-    else:
-        d = others[0].cross(others[1])
-    return _over(magnitude, n @ d) * d
-
-
-def _over(magnitude: Scalar, square: Scalar) -> Scalar:
-    return magnitude if type(square) is int and square == 1 else over(magnitude, square)
-
-
 # -------- system scene ----------------------------------------------------------------------------------------
 # Motion -> SystemScene: what force laws and constraints ask of a system; where coordinates start.
 
@@ -222,7 +190,7 @@ class SystemScene:
         """(s, force and couple of the unit push along it on the body, where on it, a place of its parent, the arm
         from there), of a variable of the body's joint, ground axes."""
         link = self.motion.link(body)
-        force, couple = pushed_along(link, variable, 1)
+        force, couple = link.pushed_along(variable, 1)
         R, (seat, slid) = link.pose.R, (link.before.p, link.local.p)
         name, R_parent = None, Matrix.IDENTITY
         if link.parent != GROUND:
@@ -364,7 +332,7 @@ class ContactMode:
         radius = getattr(getattr(link.joint, "friction", None), "radius", None)
         w, v = link.S[variable]
         if radius is None or all(map(is_zero, v)):
-            return pushed_along(link, variable, 1)
+            return link.pushed_along(variable, 1)
         r = motion.scope.value(radius)
         square = r * r + v @ v
         return over(1, square) * v, over(r * r, square) * w

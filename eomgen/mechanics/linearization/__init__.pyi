@@ -8,9 +8,6 @@ from eomgen.mechanics.linearization.linearization import SmallMotions as SmallMo
 # One frequency: the mode in numbers, and in closed form where it has one
 from eomgen.mechanics.linearization.modes import Frequency as Frequency
 
-# One mode
-from eomgen.mechanics.linearization.modes import Mode as Mode
-
 # Eigenvalues, frequencies, shapes, transfer functions and stability that follow from small motions
 from eomgen.mechanics.linearization.modes import Modes as Modes
 

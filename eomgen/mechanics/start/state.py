@@ -12,7 +12,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues, OpenConstraints, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import Assembly, Closure, Fork, Row, open_at, open_by
+from eomgen.mechanics.constraints import Assembly, Closure, Fork, Row, open_by
 from eomgen.mechanics.dynamics import System, Valueless, mass
 from eomgen.mechanics.state import Doubles, Numbers
 from eomgen.model import (
@@ -168,9 +168,8 @@ def _with_rates_closed(
     system: System, state: State, called: frozenset[str], parameters: Mapping[str, Any] | None
 ) -> tuple[State, tuple[str, ...]]:
     """(the nearest state in which speeds agree with the constraints, the constraints that did not hold)."""
-    apart = open_at(((row, row.velocity) for row in system.constraints.closing), system.symbols.u, state)
-    constraints = Assembly(system.constraints).that_stay(apart)
-    opened = tuple(name for name in apart if any(row.constraint == name for row in constraints.rows))
+    pairs = ((row, row.velocity) for row in system.constraints.closing)
+    constraints, opened = Assembly(system.constraints).opened(pairs, system.symbols.u, state)
     if not opened:
         return state, ()
     M = _inertia(system, state, parameters)

@@ -27,7 +27,7 @@ from eomgen.model.parts import begun_speeds
 from eomgen.model.positions import DocumentPath
 from eomgen.model.units import typing_of
 from eomgen.model.values import in_order
-from eomgen.symbolic.expression import DEGREES, NAMES, Expression, degrees, is_name, meant_name
+from eomgen.symbolic.expression import NAMES, Expression, degrees, is_name, meant_name
 
 RESERVED = {"t": "time", "pi": "the constant", "nan": "no number", "inf": "no number", "infinity": "no number"}
 _WORD = re.compile(r"\w+")
@@ -379,7 +379,7 @@ def _misplaced(catalog: Catalog, leaf: Leaf, name: str, column: int, allowed: fr
 
 
 def _in_degrees(name: str, leaf: Leaf) -> str:
-    return degrees(leaf.value.text) if name in DEGREES and isinstance(leaf.value, Expression) else ""
+    return degrees(leaf.value.text, name) if isinstance(leaf.value, Expression) else ""
 
 
 def _declare(catalog: Catalog, name: str) -> str:

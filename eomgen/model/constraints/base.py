@@ -149,6 +149,15 @@ class Constraint(Part, ABC):
             what = f"'{path[1]}' has a restitution and cannot end, so that it never closes again"
             yield Diagnostic((*path, "restitution"), what, "unilateral = true, or leave it out", key=True)
 
+    def assumption(self, name: str) -> str:
+        """The sentence that states what is assumed by the constraint of this name; "" where nothing is."""
+        return ""
+
+    @property
+    def only_pulls(self) -> bool:
+        """True if its tension is never a push: a string, or a member that may go slack."""
+        return bool(self.strand_rows()) or bool(getattr(self, "unilateral", False))
+
     @classmethod
     def works_in(cls, space: str) -> bool:
         """True if this version derives the constraint in this space."""

@@ -146,6 +146,12 @@ class Equation(Constraint):
 class NodeBalance(Equation):
     """Equilibrium of a node without mass: nobody declares it, and its multiplier is 0."""
 
+    PREFIX: ClassVar[str] = "balance_of_"  # of its name, before its coordinate
+
+    def assumption(self, name: str) -> str:
+        follows = "moves no mass: it follows from the balance of what pushes it"
+        return f"{name.removeprefix(self.PREFIX)} {follows} ({name})"
+
 
 def _pushes(measured: Mapping[Call, Measured], slopes: Mapping[Call, Scalar]) -> tuple[Push, ...]:
     return tuple(push for call, k in slopes.items() for push in measured[call].pushed(k))

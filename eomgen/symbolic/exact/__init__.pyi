@@ -47,7 +47,6 @@ from eomgen.symbolic.exact.equality import rounding_decides as rounding_decides
 
 # The expanded forms of the nodes of one graph
 from eomgen.symbolic.exact.expansion import Expansion as Expansion
-from eomgen.symbolic.exact.factorization import PlaceLists as PlaceLists
 
 # Places of the factors' entries that are not zero
 from eomgen.symbolic.exact.factorization import Zeros as Zeros

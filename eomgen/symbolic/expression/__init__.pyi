@@ -55,7 +55,6 @@ from eomgen.symbolic.expression.formula import Call as Call
 
 # A formula of the model file, as a tree of our own that any scalar can evaluate
 from eomgen.symbolic.expression.formula import Expression as Expression
-from eomgen.symbolic.expression.formula import Instruction as Instruction
 
 # A name as an argument: of a constraint (`B`), a body, a point (`arm.end`), a member (`n1-n2`), a coordinate
 from eomgen.symbolic.expression.formula import Reference as Reference
@@ -144,7 +143,6 @@ from eomgen.symbolic.expression.splines import Sampled as Sampled
 
 # The function through samples: "cubic" (f'' continuous), "pchip" (cubics, monotone between samples), "linear"
 from eomgen.symbolic.expression.splines import spline_of as spline_of
-from eomgen.symbolic.expression.text import DEGREES as DEGREES
 
 # of ten, in a decimal: what a double can hold
 from eomgen.symbolic.expression.text import LARGEST_EXPONENT as LARGEST_EXPONENT

@@ -601,9 +601,9 @@ def two_values(text: str, place: int) -> str:
     return ""
 
 
-def degrees(text: str) -> str:
-    """The fix of an angle in degrees: "angles are in rad here: write pi/2", or ""."""
-    found = _DEGREES.search(text)
+def degrees(text: str, unit: str = "deg") -> str:
+    """The fix of an angle in degrees: "angles are in rad here: write pi/2", or ""; also where `unit` is no degree."""
+    found = _DEGREES.search(text) if unit in DEGREES else None
     if found is None:
         return ""
     share = fraction_of(found[1]) / 180
