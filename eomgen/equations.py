@@ -125,11 +125,11 @@ class Equations(Result):
 
         equations.M.subs({equations.symbols["m"]: 2})
         """
-        from eomgen.symbolic.print import symbol
+        from eomgen.symbolic.print import to_sympy
 
         own = self.graph.symbols
         named = (own.t, *own.parameters.values(), *own.inputs.values(), *own.q, *own.u, *own.a, *own.z, *own.lam)
-        return {node.name: symbol(node.name) for node in named}
+        return dict(zip((node.name for node in named), to_sympy(named), strict=True))
 
     N = cached_property(lambda self: _matrix(self.graph.N, len(self.speeds)))
     nu = cached_property(lambda self: _column(self.graph.nu))
@@ -560,7 +560,7 @@ def _sympy_system(equations: EquationsOfMotion) -> Any:
     from sympy.physics.mechanics import SymbolicSystem
     from sympy.physics.vector import dynamicsymbols
 
-    from eomgen.symbolic.print import symbol, to_sympy
+    from eomgen.symbolic.print import to_sympy
 
     if equations.friction:
         raise DerivationError("friction that hangs on the reactions has no mass matrix", fix="take `rhs`, or codegen")
@@ -569,18 +569,18 @@ def _sympy_system(equations: EquationsOfMotion) -> Any:
     if any(depends_on(x, own.a) for x in equations.state_rates):
         equations.system.refuse_states("sympy's systems hold no rates by accelerations", "take `rhs`, or codegen")
     moving = (*own.q, *own.u, *own.z, *own.inputs.values())
-    functions = {symbol(x.name): Function(x.name.replace("'", "_dot"))(t) for x in moving}
+    functions = {x: Function(x.name.replace("'", "_dot"))(t) for x in moving}
     impulses = [Function(f"impulse_{row.constraint}_{row.number}")(t) for row in equations.system.constraints.closing]
     rows: list[ScalarRow] = [(*row, *(-J[i] for J in equations.J)) for i, row in enumerate(equations.M)]
     rows += [(*row, *(0 for _ in equations.J)) for row in equations.J]
     rates = (*equations.system.scope.rates, *equations.state_rates)
     right = (*equations.forcing, *(-x for x in equations.gamma))
-    known = functions | {symbol("t"): t}
+    known = dict(zip(to_sympy((*functions, own.t)), (*functions.values(), t), strict=True))
     entries = [x.xreplace(known) for x in to_sympy([*(x for row in rows for x in row), *right, *rates])]
     return SymbolicSystem(
-        [functions[symbol(x.name)] for x in own.places],
+        [functions[x] for x in own.places],
         ImmutableDenseMatrix(n + k, 1, entries[(n + k) ** 2 : (n + k) * (n + k + 1)]),
-        speeds=[*(functions[symbol(x.name)] for x in own.u), *impulses],
+        speeds=[*(functions[x] for x in own.u), *impulses],
         mass_matrix=ImmutableDenseMatrix(n + k, n + k, entries[: (n + k) ** 2]),
         coordinate_derivatives=ImmutableDenseMatrix(len(rates), 1, entries[(n + k) * (n + k + 1) :]),
     )

@@ -13,9 +13,6 @@ from eomgen.codegen.program import QuaternionPlaces as QuaternionPlaces
 # A linear system in the midst of a program
 from eomgen.codegen.program import Solve as Solve
 
-# The state, or one state a row, with every quaternion over its norm; 0 stays
-from eomgen.codegen.program import at_unit_norms as at_unit_norms
-
 # The letters, digits and underscores nearest to a name: 'ω₁' -> 'omega1', 'arm-7' -> 'arm_7'
 from eomgen.codegen.program import identifier as identifier
 from eomgen.codegen.rhs import Batch as Batch

@@ -161,11 +161,11 @@ class Program:
         return self.states + self.accelerations
 
     @property
-    def unit_quaternions(self) -> tuple[QuaternionPlaces, ...]:
+    def unit_quaternions(self) -> QuaternionPlaces:
         """Places of the four numbers of every quaternion among the states."""
         place = {node: k for k, node in enumerate(self.states)}
         unit_quaternions = self.symbols.graph.unit_quaternions
-        return tuple(
+        return QuaternionPlaces(
             tuple(place[x] for x in symbols) for symbols in unit_quaternions if all(x in place for x in symbols)
         )
 
@@ -524,14 +524,16 @@ def _plain(letter: str) -> str:
 # Program -> the places in its state of quaternions, and states in which these have norm 1.
 
 
-QuaternionPlaces = tuple[int, ...]
+class QuaternionPlaces(tuple[tuple[int, ...], ...]):
+    """The places in a state of the four numbers of every quaternion."""
 
+    __slots__ = ()
 
-def at_unit_norms(x: Any, unit_quaternions: Sequence[QuaternionPlaces]) -> Any:
-    """The state, or one state a row, with every quaternion over its norm; 0 stays."""
-    found = np.array(x, dtype=float)
-    for places in unit_quaternions:
-        four = found[..., list(places)]
-        norm = np.sqrt(np.sum(four * four, axis=-1, keepdims=True))
-        found[..., list(places)] = four / np.where(norm > 0, norm, 1)
-    return found
+    def at_unit_norms(self, x: Any) -> Any:
+        """The state, or one state a row, with every quaternion over its norm; 0 stays."""
+        found = np.array(x, dtype=float)
+        for places in self:
+            four = found[..., list(places)]
+            norm = np.sqrt(np.sum(four * four, axis=-1, keepdims=True))
+            found[..., list(places)] = four / np.where(norm > 0, norm, 1)
+        return found

@@ -330,7 +330,7 @@ class BatchOptions:
     atol: float
     most_steps: int
     stops: tuple[float, ...] = ()
-    unit_quaternions: tuple[QuaternionPlaces, ...] = ()
+    unit_quaternions: QuaternionPlaces = QuaternionPlaces()
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.codegen.kernel_reader import solve_bordered
-from eomgen.codegen.program import Program, Solve, at_unit_norms, stem_of
+from eomgen.codegen.program import Program, Solve, stem_of
 from eomgen.codegen.rhs import RightHandSide, target_named, targets_named
 from eomgen.codegen.targets.base import Called, Description, Emitted, FileContent, Role, Target, TestVector, header
 from eomgen.codegen.targets.c_lanes import RUN_TEST, RUN_USE, integrator_files
@@ -454,7 +454,7 @@ def _state(program: Program, rng: random.Random, x0: Any, p0: Any, with_inputs: 
     """A state without its answer; short decimals, for the reader."""
     symbols = program.symbols
     start = [0.0] * len(program.states) if x0 is None else [float(v) for v in x0]
-    x = tuple(at_unit_norms([round(v + rng.uniform(-1, 1), 3) for v in start], program.unit_quaternions).tolist())
+    x = tuple(program.unit_quaternions.at_unit_norms([round(v + rng.uniform(-1, 1), 3) for v in start]).tolist())
     p = tuple(round(rng.uniform(0.5, 2), 3) for _ in symbols.parameters) if p0 is None else tuple(map(float, p0))
     inputs = tuple(round(rng.uniform(-1, 1), 3) for _ in symbols.inputs)
     t, a = round(rng.uniform(0, 2), 3), tuple(round(rng.uniform(-2, 2), 3) for _ in program.accelerations)

@@ -34,7 +34,7 @@ from eomgen.model import (
 from eomgen.proof import Promise
 from eomgen.resources import check_patience, doing
 from eomgen.runs.simulator import SAMPLES, KnownEquations, Runs, Simulator
-from eomgen.simulation import FoundRuns, ManyRuns, PhaseModel, instants_of, one_phase, refuse_bad_run
+from eomgen.simulation import FoundRuns, ManyRuns, PhaseModel, PhaseModels, instants_of
 from eomgen.symbolic.expression import Expression
 
 OfRuns = Mapping[str, Any]
@@ -86,7 +86,7 @@ def many_runs(
     """
     how = simulator.how
     time = seconds(time)
-    refuse_bad_run(0.0, time, how)
+    how.refuse_bad_run(0.0, time)
     if threads < 1:
         raise UsageError(f"{threads} threads make no sense", fix="give 1 or more")
     plan = _planned(simulator, time, parameters or {}, start or {}, inputs or {}, samples)
@@ -170,7 +170,7 @@ def _known(simulator: Simulator) -> tuple[Any, PhaseModel]:
     """Equations, and the phase that has the coordinates and speeds of the start."""
     equations = simulator.equations
     p = np.zeros(len(equations.graph.symbols.parameters))
-    return equations, one_phase(equations.graph.system, equations.graph, p, simulator.target)
+    return equations, PhaseModels.one_phase(equations.graph.system, equations.graph, p, simulator.target)
 
 
 def _in_lanes(plan: _Plan, threads: int) -> Reported | None:

@@ -46,7 +46,6 @@ from eomgen.simulation import (
     WholeRun,
     formulas_of,
     instants_of,
-    refuse_bad_run,
 )
 from eomgen.symbolic.expression import Expression, as_expression, parse
 from eomgen.symbolic.numeric import tolerances
@@ -426,7 +425,7 @@ def controlled_run(
     """
     model = equations.model
     time = seconds(time)
-    refuse_bad_run(0.0, time, how)
+    how.refuse_bad_run(0.0, time)
     functions = [name for name, each in controllers.items() if each.every is None]
     if functions and model.has_phases:
         raise NotYet(

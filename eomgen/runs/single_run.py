@@ -39,7 +39,6 @@ from eomgen.simulation import (
     WholeRun,
     formulas_of,
     instants_of,
-    refuse_bad_run,
 )
 from eomgen.symbolic.expression import Expression, Scalar, is_zero, parse, symbols_of
 from eomgen.symbolic.numeric import FLOAT, evaluate, number_of, tolerances
@@ -81,7 +80,7 @@ def run(
     how = how or Stepping()
     model = equations.model
     condition = None if until is None else _condition_of(model, until)
-    refuse_bad_run(0.0, time, how)
+    how.refuse_bad_run(0.0, time)
     models = models or phase_models(equations, RightHandSide.parameter_values(model, parameters), how, target)
     here = PhaseStart.of(models, 0.0, parameters, start)
     _refuse_fork_at_rest(models, here)

@@ -15,9 +15,6 @@ from eomgen.simulation.integration import instants_of as instants_of
 # The motion from a start while the equations hold, put back onto their constraints
 from eomgen.simulation.integration import integrate_one_phase as integrate_one_phase
 
-# Refuses options that make no sense
-from eomgen.simulation.integration import refuse_bad_run as refuse_bad_run
-
 # Result of an integration
 from eomgen.simulation.integrator import Run as Run
 
@@ -44,9 +41,6 @@ from eomgen.simulation.phase_models import DerivedAt as DerivedAt
 
 # The phases of a model
 from eomgen.simulation.phase_models import PhaseModels as PhaseModels
-
-# Equations of motion as the one phase of a motion in which no contact changes
-from eomgen.simulation.phase_models import one_phase as one_phase
 
 # One phase as it was run
 from eomgen.simulation.phase_run import PhaseRun as PhaseRun

@@ -102,7 +102,7 @@ class ManyRuns:
             return None
         requested = BatchOptions(
             *((0.0, self.end), self.instants, how.rtol, how.atol, how.most_steps, how.breakpoints),
-            tuple(rhs.unit_quaternions),
+            rhs.unit_quaternions,
         )
         p, x0 = self.p, starts()
         found = batch.runs(x0, p, requested, threads=self.threads, check=check_patience)

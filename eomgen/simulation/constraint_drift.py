@@ -23,7 +23,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen import Program, QuaternionPlaces, RightHandSide, at_unit_norms
+from eomgen.codegen import Program, QuaternionPlaces, RightHandSide
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import DependentBlock, Rank
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, mass
@@ -84,7 +84,7 @@ class Projection:
     coordinates: int
     size: int
     placed: int
-    unit_quaternions: tuple[QuaternionPlaces, ...]
+    unit_quaternions: QuaternionPlaces
     gaps: RightHandSide
     positions: Rows | None
     speeds: Rows | None
@@ -106,7 +106,7 @@ class Projection:
             allowed: the residual that they may have; 0: as little as Newton's method reaches, as needed near a singular
                 position, where residuals are divided by a determinant that vanishes.
         """
-        found = at_unit_norms(x, self.unit_quaternions)
+        found = self.unit_quaternions.at_unit_norms(x)
         enough = max(FAR * allowed, rounding_of(x[: self.size])) if allowed > 0 else 0.0
         for rows in (self.positions, self.speeds):
             if rows is not None:
@@ -161,7 +161,7 @@ class _Open:
     def moved(self, x: np.ndarray, step: Sequence[float]) -> np.ndarray:
         found = x.copy()
         found[self._moved] += step
-        return np.asarray(at_unit_norms(found, self.projection.unit_quaternions))
+        return np.asarray(self.projection.unit_quaternions.at_unit_norms(found))
 
 
 def least_change(M: np.ndarray, J: np.ndarray, right: np.ndarray) -> np.ndarray:
@@ -302,7 +302,7 @@ class DriftCorrection:
         level: the energy that is kept; None where it is only watched.
     """
 
-    unit_quaternions: Sequence[QuaternionPlaces]
+    unit_quaternions: QuaternionPlaces
     projection: Projection | None
     atol: float
     every: int | None = None
@@ -314,7 +314,7 @@ class DriftCorrection:
         """(the state from which the run goes on after a step, whether it was put back)."""
         self.steps += 1
         if self.every is not None and self.steps % self.every:
-            return (at_unit_norms(x, self.unit_quaternions), True) if self.unit_quaternions else (x, False)
+            return (self.unit_quaternions.at_unit_norms(x), True) if self.unit_quaternions else (x, False)
         found = self.at(t, x, forced=self.every is not None)
         return (x, False) if found is x else (found, True)
 
@@ -325,7 +325,7 @@ class DriftCorrection:
 
     def _on_constraints(self, t: float, x: np.ndarray, forced: bool) -> np.ndarray:
         if self.projection is None or not (forced or self.projection.is_open(t, x, self.atol)):
-            return at_unit_norms(x, self.unit_quaternions) if self.unit_quaternions else x
+            return self.unit_quaternions.at_unit_norms(x) if self.unit_quaternions else x
         found, left = self.projection.closed(t, x, self.atol)
         if not left <= max(LOST * self.atol, rounding_of(found)) and self.lost is None:
             self.lost = t, left
@@ -333,7 +333,7 @@ class DriftCorrection:
 
     def rows(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
         """States between steps, one a row, on the constraints too."""
-        found = at_unit_norms(x, self.unit_quaternions)
+        found = self.unit_quaternions.at_unit_norms(x)
         if self.level is not None:
             return np.array([self.at(float(s), row) for s, row in zip(t, found, strict=True)])
         if self.projection is None or self.every is not None or not len(t):

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from functools import lru_cache
-from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -16,10 +14,10 @@ from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.model import Typed, are_several, seconds, typed_values
 from eomgen.simulation.constraint_drift import Nearness, Projection, nearness_of, projection_of
 from eomgen.simulation.event_location import Events
-from eomgen.simulation.integrator import MOST_STEPS, STABILIZATIONS, Run, Stepping, measured
+from eomgen.simulation.integrator import MOST_STEPS, Run, Stepping, measured
 from eomgen.simulation.result import Kept, Phase, Trajectory
 from eomgen.simulation.singular import Flow, march_across
-from eomgen.simulation.solvers import HEYOKA, METHODS, Slope
+from eomgen.simulation.solvers import Slope
 from eomgen.symbolic.numeric import tolerances
 
 SAMPLES = 1001
@@ -76,7 +74,7 @@ def integrate(
     start, end = (0.0, float(time)) if isinstance(time, (int, float)) else map(float, time)
     x0, p = _vector("x0", rhs.x0 if x0 is None else x0), _vector("p", rhs.p0 if p is None else p)
     how = Stepping(method, rtol, atol, most_steps, stabilization, every, breakpoints=breakpoints)
-    refuse_bad_run(start, end, how)
+    how.refuse_bad_run(start, end)
     instants = None if samples is None else instants_of(samples, start, end)
 
     rhs(start, x0, p, () if inputs is None else inputs(start))  # refuses what is too short or too long
@@ -206,27 +204,3 @@ def _vector(what: str, values: Any) -> np.ndarray:
             f"{what} must be finite numbers, not {values!r}", fix="leave out what is infinite or no number"
         )
     return vector
-
-
-def refuse_bad_run(start: float, end: float, how: Stepping) -> None:
-    """Refuses options that make no sense.
-
-    Raises:
-        UsageError: the time, a tolerance, the method, or the stabilization of constraints.
-    """
-    if not (math.isfinite(start) and math.isfinite(end) and end >= start):
-        raise UsageError(f"the time from {start:g} s to {end:g} s makes no sense", fix="give an end after the start")
-    if not all(isinstance(x, Real) and 0 < x < math.inf for x in (how.rtol, how.atol)):
-        raise UsageError(
-            f"tolerances must be positive numbers, not rtol = {how.rtol}, atol = {how.atol}",
-            fix="take rtol and atol above 0",
-        )
-    if how.method not in (*METHODS, HEYOKA):
-        raise UsageError(f"unknown method '{how.method}'", fix=f"methods are {', '.join((*METHODS, HEYOKA))}")
-    if how.stabilization not in STABILIZATIONS:
-        raise UsageError(
-            f"unknown way to keep constraints closed: '{how.stabilization}'",
-            fix=f"ways are {', '.join(STABILIZATIONS)}",
-        )
-    if how.every is not None and how.every < 1:
-        raise UsageError(f"projection at every {how.every} steps makes no sense", fix="give 1 or more")

@@ -10,18 +10,31 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Sequence
 from dataclasses import field, replace
 from functools import cache, partial
+from numbers import Real
 from typing import Any, Protocol
 
 import numpy as np
 
 from eomgen.codegen import QuaternionPlaces, RateFunction, in_c
+from eomgen.errors import UsageError
 from eomgen.frozen import dataclass, with_fields
 from eomgen.resources import PatienceEnded, check_patience, keep_what_there_is
 from eomgen.simulation.compiled_steps import COMPILED, CompiledSteps, HeyokaSteps, Watched
 from eomgen.simulation.constraint_drift import DriftCorrection, EnergyLevel, Projection
 from eomgen.simulation.event_location import LOOKED_OUT, Crossing, Events, EventSearch, sharpened
 from eomgen.simulation.result import RunStatus
-from eomgen.simulation.solvers import AUTO, EXPLICIT, HEYOKA, TAYLOR, LateSlope, NotFinite, ScipySteps, StateRate, finer
+from eomgen.simulation.solvers import (
+    AUTO,
+    EXPLICIT,
+    HEYOKA,
+    METHODS,
+    TAYLOR,
+    LateSlope,
+    NotFinite,
+    ScipySteps,
+    StateRate,
+    finer,
+)
 from eomgen.symbolic.numeric import tolerances
 
 MOST = 20_000  # states
@@ -79,6 +92,7 @@ MOST_STEPS = 100_000_000  # an hour of a small system in C
 MOST_FINE_STEPS = 200  # from one instant to the next around an event
 SHARE = 0.1  # of the tolerances of a run: those of one step
 RATES = (10.0, 10.0)  # of Baumgarte's rows [1/s]
+NO_QUATERNIONS = QuaternionPlaces()
 STABILIZATIONS = ("projection", "energy", "baumgarte", "none")
 
 Dense = Callable[[], Callable[[Any], np.ndarray]]
@@ -120,6 +134,31 @@ class Stepping:
         """Fine tolerances: of motions whose instants are then sought in closed form."""
         return Stepping(AUTO, tolerances.FINE_RUN, tolerances.FINE_RUN, most_steps)
 
+    def refuse_bad_run(self, start: float, end: float) -> None:
+        """Refuses options that make no sense.
+
+        Raises:
+            UsageError: the time, a tolerance, the method, or the stabilization of constraints.
+        """
+        if not (math.isfinite(start) and math.isfinite(end) and end >= start):
+            raise UsageError(
+                f"the time from {start:g} s to {end:g} s makes no sense", fix="give an end after the start"
+            )
+        if not all(isinstance(x, Real) and 0 < x < math.inf for x in (self.rtol, self.atol)):
+            raise UsageError(
+                f"tolerances must be positive numbers, not rtol = {self.rtol}, atol = {self.atol}",
+                fix="take rtol and atol above 0",
+            )
+        if self.method not in (*METHODS, HEYOKA):
+            raise UsageError(f"unknown method '{self.method}'", fix=f"methods are {', '.join((*METHODS, HEYOKA))}")
+        if self.stabilization not in STABILIZATIONS:
+            raise UsageError(
+                f"unknown way to keep constraints closed: '{self.stabilization}'",
+                fix=f"ways are {', '.join(STABILIZATIONS)}",
+            )
+        if self.every is not None and self.every < 1:
+            raise UsageError(f"projection at every {self.every} steps makes no sense", fix="give 1 or more")
+
     def of_one_step(self) -> Stepping:
         """The tolerances of a whole run cut down to one step's: errors of many steps add up."""
         step: Stepping = with_fields(self, rtol=max(SHARE * self.rtol, tolerances.LEAST_RTOL), atol=SHARE * self.atol)
@@ -143,7 +182,7 @@ class Stepping:
 
     def hold(
         self,
-        unit_quaternions: Sequence[QuaternionPlaces],
+        unit_quaternions: QuaternionPlaces,
         projection: Projection | None,
         level: EnergyLevel | None = None,
     ) -> DriftCorrection:
@@ -260,7 +299,7 @@ def march(
     how: Stepping,
     instants: np.ndarray | None = None,
     events: Events | None = None,
-    unit_quaternions: Sequence[QuaternionPlaces] = (),
+    unit_quaternions: QuaternionPlaces = NO_QUATERNIONS,
     projection: Projection | None = None,
     slope: LateSlope | None = None,
     lookout: Lookout | None = None,

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen import Address, Program, RightHandSide, at_unit_norms, c_together, functions_in_c
+from eomgen.codegen import Address, Program, RightHandSide, c_together, functions_in_c
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import CLOSING
 from eomgen.mechanics.dynamics import System
@@ -220,7 +220,7 @@ class ManyStarts:
         columns = {names.index(name): values for name, values in given.items()}
         for k in (k for k in columns if k < places):
             x[:, k] = columns[k]
-        x = at_unit_norms(x, self._places.program.unit_quaternions)
+        x = self._places.program.unit_quaternions.at_unit_norms(x)
         x[:, places:] = self._speeds.many(0.0, x, p)
         for k in (k for k in columns if k >= places):
             x[:, k] = columns[k]

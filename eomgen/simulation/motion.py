@@ -22,7 +22,7 @@ from eomgen.simulation.integrator import Run, Stepping, march
 from eomgen.simulation.many_runs import MOST_AT_INSTANT
 from eomgen.simulation.phase_change import PhaseStart, next_start
 from eomgen.simulation.phase_model import PhaseModel
-from eomgen.simulation.phase_models import PhaseModels, one_phase
+from eomgen.simulation.phase_models import PhaseModels
 from eomgen.simulation.phase_run import PhaseCondition, PhaseRun, ended
 from eomgen.simulation.singular import Flow, ended_where_singular, march_across
 from eomgen.symbolic.exact import roots
@@ -436,7 +436,7 @@ class FirstTime:
     @cached_property
     def _phase(self) -> PhaseModel:
         p = np.array([self.values[node] for node in self.equations.symbols.parameters.values()])
-        return one_phase(self.equations.system, self.equations, p)
+        return PhaseModels.one_phase(self.equations.system, self.equations, p)
 
     @cached_property
     def _here(self) -> PhaseStart:

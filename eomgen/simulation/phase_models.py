@@ -50,14 +50,6 @@ def integrated_system(system: System) -> System:
     return Quantities.put_into_rates(system.free) if system.singular_blocks else system
 
 
-def one_phase(declared: System, equations: EquationsOfMotion, p: np.ndarray, target: str | None = None) -> PhaseModel:
-    """Equations of motion as the one phase of a motion in which no contact changes."""
-    system = integrated_system(declared)
-    if system is not declared:
-        equations = equations_of_motion(system)
-    return PhaseModel(ContactEvents(Configuration(), (), {}, system), declared, equations, p, target)
-
-
 @dataclass(frozen=True)
 class Slides:
     """The contacts of a system that have Coulomb friction, as they slide.
@@ -119,6 +111,16 @@ class PhaseModels:
         self.known: dict[str, dict[Hashable, Any]] = {"starts": {}, "in C": {}, "come to": {}, "asked for": {}}
         self.known["changes"] = {}
         self._slides: dict[Configuration, Slides] = {}
+
+    @staticmethod
+    def one_phase(
+        declared: System, equations: EquationsOfMotion, p: np.ndarray, target: str | None = None
+    ) -> PhaseModel:
+        """Equations of motion as the one phase of a motion in which no contact changes."""
+        system = integrated_system(declared)
+        if system is not declared:
+            equations = equations_of_motion(system)
+        return PhaseModel(ContactEvents(Configuration(), (), {}, system), declared, equations, p, target)
 
     def at(self, p: np.ndarray, fed: Fed | None = None) -> PhaseModels:
         """The same at other values of the parameters, at which the same is derived: no phase is made twice.

@@ -161,7 +161,7 @@ class Flow:
 
     f: StateRate
     how: Stepping
-    unit_quaternions: Sequence[QuaternionPlaces] = ()
+    unit_quaternions: QuaternionPlaces = QuaternionPlaces()
     projection: Projection | None = None
     slope: LateSlope | None = None
     level: EnergyLevel | None = None

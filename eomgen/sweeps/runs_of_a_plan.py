@@ -30,7 +30,7 @@ from eomgen.model import (
 )
 from eomgen.resources import another_stretch
 from eomgen.sensitivities import unit_of_slope
-from eomgen.simulation import Stepping, Trajectory, refuse_bad_run
+from eomgen.simulation import Stepping, Trajectory
 from eomgen.sweeps.design import FIXED, Stepped, SweepPlan, plan_of, refuse_bad_design, spread_of, texts
 from eomgen.sweeps.workers import (
     UNKNOWN_WORKERS,
@@ -299,7 +299,7 @@ def planned(model: Model, *, runs: int | None, **fields: Any) -> SweepPlan:
     how = fields["how"]
     if not how.time > 0:
         raise UsageError(f"the time {how.time:g} s makes no sense", fix="give one above 0")
-    refuse_bad_run(0.0, how.time, Stepping(how.method, how.rtol, how.atol))
+    Stepping(how.method, how.rtol, how.atol).refuse_bad_run(0.0, how.time)
     for text in plan.requested:
         of, to = plan.slopes.get(text, (text, ""))
         output = Requests(model).output(of)

@@ -16,9 +16,9 @@ from eomgen.mechanics.linearization.reduction import LinearEquations, Reducing, 
 from eomgen.mechanics.linearization.reference import ReferenceMotion
 from eomgen.mechanics.start import Seeds
 from eomgen.mechanics.state import Entries, Exact, NumberField, Numbers
-from eomgen.symbolic.exact import Expansion, Polynomial, TooLarge, cramer, reduced
-from eomgen.symbolic.expression import Fraction, Node, Scalar, is_zero, jacobian, operations, over, tangent
-from eomgen.symbolic.numeric import Work, evaluate, fifty_digits, floats_of, tolerances
+from eomgen.symbolic.exact import Polynomial, cramer
+from eomgen.symbolic.expression import Fraction, Node, Scalar, is_zero, jacobian, operations, tangent
+from eomgen.symbolic.numeric import evaluate, fifty_digits, floats_of, tolerances
 
 # -------- transfer --------------------------------------------------------------------------------------------
 # LinearEquations with inputs -> transfer functions, exact by Cramer's rule, or in floats.
@@ -67,16 +67,10 @@ def _shortened(
     while len(a) > 1 and len(b) > 1 and is_zero(a[0]) and is_zero(b[0]):
         a, b = a[1:], b[1:]
     plain = Polynomial(tuple(a)), Polynomial(tuple(b))
-    expansion = Expansion(s.graph, Work.ANSWER, positive)
-    expansion.of(s)
-    try:
-        parts = reduced(expansion, expansion.of(over(plain[0].at(s), plain[1].at(s))))
-    except TooLarge:
+    found = plain[0].over(plain[1], s, positive)
+    if found is None:
         return plain
-    node = expansion.atoms.node
-    upper, lower = (Polynomial.of(node(part), s, positive) for part in parts)
-    if upper is None or lower is None:
-        return plain
+    upper, lower = found
     leading = evaluate((lower.coefficients[-1],), trial, fifty_digits())[0]
     return (upper, lower) if leading > 0 else (upper.negative(positive), lower.negative(positive))
 

@@ -45,9 +45,6 @@ from eomgen.symbolic.exact.equality import real_values as real_values
 # True if scalars change at a state 1e-30 away, as with 0/0 or 1/0: their values here are only rounding errors
 from eomgen.symbolic.exact.equality import rounding_decides as rounding_decides
 
-# The expanded forms of the nodes of one graph
-from eomgen.symbolic.exact.expansion import Expansion as Expansion
-
 # Places of the factors' entries that are not zero
 from eomgen.symbolic.exact.factorization import Zeros as Zeros
 
@@ -105,9 +102,6 @@ from eomgen.symbolic.exact.one_variable import Conditions as Conditions
 
 # c0 + c1 s + c2 s^2 + ...: coefficients in that order, of the parameters, or floats
 from eomgen.symbolic.exact.one_variable import Polynomial as Polynomial
-
-# (numerator, denominator) without common factor as polynomials in cosines and sines, in each of their forms
-from eomgen.symbolic.exact.quotient import reduced as reduced
 
 # True if equation(x + period) is the same function as equation(x)
 from eomgen.symbolic.exact.solving import has_period as has_period

@@ -11,6 +11,7 @@ from eomgen.symbolic.exact import cramer
 from eomgen.symbolic.exact.expansion import Expansion
 from eomgen.symbolic.exact.normal_forms import simplest, simplest_sum, written_shortest
 from eomgen.symbolic.exact.polynomials import factored, square_root
+from eomgen.symbolic.exact.quotient import reduced
 from eomgen.symbolic.exact.solving import coefficients, wave_free
 from eomgen.symbolic.exact.terms import Key, Terms, TooLarge, content, terms_plus, terms_scaled
 from eomgen.symbolic.expression import Node, Number, Scalar, is_zero, over, sqrt, substituted
@@ -66,6 +67,17 @@ class Polynomial:
         if not in_full and _stays_long(expansion, terms):
             return Polynomial(tuple(map(expansion.atoms.node, terms)))
         return Polynomial(tuple(simplest_sum(expansion, each) for each in terms))
+
+    def over(self, below: Polynomial, s: Node, positive: Collection[Node]) -> tuple[Polynomial, Polynomial] | None:
+        """(numerator, denominator) of self / below without common factors; None where it is too much work."""
+        expansion = Expansion(s.graph, Work.ANSWER, positive)
+        expansion.of(s)
+        try:
+            parts = reduced(expansion, expansion.of(over(self.at(s), below.at(s))))
+        except TooLarge:
+            return None
+        numerator, denominator = (Polynomial.of(expansion.atoms.node(part), s, positive) for part in parts)
+        return None if numerator is None or denominator is None else (numerator, denominator)
 
     def frequencies(self, s: Node, positive: Collection[Node]) -> tuple[Scalar, ...]:
         """The angular frequencies Im s of roots that have a closed form, each once.

@@ -54,9 +54,6 @@ from eomgen.symbolic.print.names import upright as upright
 # A sympy expression as a scalar of the symbols' graph
 from eomgen.symbolic.print.sympy_form import scalar_from_sympy as scalar_from_sympy
 
-# The real sympy symbol of a name; a Rate where the name has a prime
-from eomgen.symbolic.print.sympy_form import symbol as symbol
-
 # The outputs as sympy expressions over real symbols, their common parts made once
 from eomgen.symbolic.print.sympy_form import to_sympy as to_sympy
 
