@@ -139,10 +139,10 @@ class _Seen:
         if contact.size is not None:
             return np.zeros((0, len(self.track[0])))
         labels = {c.label for c in self.model.reactions.components if c.owner == contact.body}
-        if contact.guide is not None or "n 1" in labels:
-            return self._at_ends(contact)
         if "wrench 1" in labels:
             return self._on_flanks(contact)
+        if contact.guide is not None or "n 1" in labels:
+            return self._at_ends(contact)
         return self._forces(contact, ("n", "n 1", "n 2", "tension", "couple", *("xyz" if contact.of_joint else "")))
 
     def _on_flanks(self, contact: Contact) -> np.ndarray:
