@@ -94,8 +94,8 @@ class ContactEvents:
 
     @cached_property
     def reactions(self) -> Reactions:
-        """Every reaction of joints and constraints; open contacts have none."""
-        return Reactions.of(self.system)
+        """Every reaction of joints and constraints as the contacts are taken to slide or stick; open ones have none."""
+        return Reactions.of(self.system, as_taken=True)
 
     @cached_property
     def signals(self) -> tuple[Signal, ...]:

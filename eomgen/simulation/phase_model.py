@@ -118,7 +118,7 @@ class PhaseModel:
 
     @property
     def reactions(self) -> Reactions:
-        return self.watch.reactions
+        return Reactions.of(self.system)
 
     @property
     def coordinates(self) -> tuple[str, ...]:

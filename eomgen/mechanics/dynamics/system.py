@@ -7,9 +7,17 @@ from dataclasses import field, replace
 from functools import cached_property
 from typing import Any
 
-from eomgen.errors import DerivationError, ModelError, UsageError
+from eomgen.errors import DerivationError, MissingValues, ModelError, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import Assembly, Constraints, DependentBlock, Elimination, Rank, holds_identically
+from eomgen.mechanics.constraints import (
+    Assembly,
+    Closure,
+    Constraints,
+    DependentBlock,
+    Elimination,
+    Rank,
+    holds_identically,
+)
 from eomgen.mechanics.kinematics import (
     ContactModes,
     Loads,
@@ -36,7 +44,7 @@ from eomgen.symbolic.expression import (
     substituted,
     symbols_of,
 )
-from eomgen.symbolic.numeric import transplanted
+from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances, transplanted
 from eomgen.symbolic.print import to_text
 
 # -------- system ----------------------------------------------------------------------------------------------
@@ -76,6 +84,41 @@ class System:
         if contact.of_joint or contact.of_force:
             return SystemScene(self.motion).slip(contact)
         return next(r.sliding for r in self.constraints.rows if r.constraint == contact.name and r.tangent)
+
+    def held_by_others(self) -> System:
+        """The system in which everything sticks that others hold at rest, over the same symbols; itself without such.
+
+        What is taken to slip in a sense has no velocity in any motion that the rows allow, J u + sigma = 0, where what
+        sticks beside it, or a drive, holds it: its direction depends on theirs, so that they share what holds in any
+        way, and none of them has one value.
+        """
+        if System.held_by_others not in self.found:
+            self.found[System.held_by_others] = self._with_held(self._at_rest_among_others)
+        found: System = self.found[System.held_by_others]
+        return found
+
+    @property
+    def _at_rest_among_others(self) -> list[str]:
+        rough = (c for c in self.scope.model.rough_contacts if not c.surface and c.name in self.modes)
+        slipping = [c for c in rough if self.modes[c.name].closed and self.modes[c.name].sense]
+        if not slipping:
+            return []
+        try:
+            state = Closure(self.constraints).generic()
+            rates = evaluate([self.sliding_velocity(c) for c in slipping], state, fifty_digits())
+        except (DerivationError, MissingValues, NoValue):  # then it is taken as it is
+            return []
+        return [c.name for c, v in zip(slipping, rates, strict=True) if abs(v) < tolerances.COMPUTED]
+
+    def _with_held(self, names: Sequence[str]) -> System:
+        if not names:
+            return self
+        modes = {**self.modes, **{name: replace(self.modes[name], sense=0) for name in names}}
+        used = {} if self.elimination is None else self.elimination.used
+        rows = Constraints.of(self.motion, used, modes)
+        free = None if self.free is None else self.free._with_held(names)
+        loads = Loads.of(self.motion, self.loads.begun, modes)
+        return replace(self, loads=loads, constraints=rows, modes=modes, free=free)
 
     def let_go(self, coordinate: str) -> System:
         """The system with a driven coordinate free, which starts where it is driven from; found once.

@@ -374,9 +374,16 @@ class Reactions:
 
     @staticmethod
     def of(
-        system: System, at: Mapping[Node, Scalar] | None = None, *, short: bool = False, work: int = Work.ANSWER
+        system: System,
+        at: Mapping[Node, Scalar] | None = None,
+        *,
+        short: bool = False,
+        work: int = Work.ANSWER,
+        as_taken: bool = False,
     ) -> Reactions:
         """Every reaction, linear in the accelerations; or at one configuration, for which everything is solved anew.
+
+        Friction of what others hold at rest is one that holds, and has no single value.
 
         From as few equations as can be and from sure pivots alone is the same elimination, where all pivots are sure.
 
@@ -385,9 +392,12 @@ class Reactions:
             short: from as few equations as can be: formulas for a reader, which may divide by what vanishes at some
                 states.
             work: products of terms by which one coefficient is made readable at a configuration.
+            as_taken: what others hold at rest has its friction of sliding, as it is taken in the equations of motion.
         Raises:
             DerivationError: a body is unsupported; a force acts at no place.
         """
+        if not as_taken and (held := system.held_by_others()) is not system:
+            return Reactions.of(held, at, short=short, work=work)
         if at or work != Work.ANSWER:
             return _found(system, at or {}, short, work)
         if (key := (Reactions.of, short)) not in system.found:
