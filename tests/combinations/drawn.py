@@ -514,6 +514,16 @@ class Drawing:
 
     # the joint that is looked at
 
+    @property
+    def _is_cut_free(self) -> bool:
+        """Whether every reaction of a joint in the plane follows."""
+        placeless = {"potential", "kinetic", "generalized", "added_mass"}
+        alone = all(self.levels[x] == "none" for x in ("loop", "tie", "contact"))
+        steady = self.levels["base"] in ("ground", "turning", "sliding")
+        return (
+            self.plane and alone and steady and placeless.isdisjoint(self.levels[x] for x in ("force", "second_force"))
+        )
+
     def featured(self) -> None:
         how, extra = self.levels["joint"], self.levels["joint_with"]
         rng, host = self.rng, self.host
@@ -546,6 +556,8 @@ class Drawing:
             joint |= {"limits": dict.fromkeys(several, wide) if several else wide, "restitution": 0.3}
         if extra == "rubbing":
             joint["friction"] = {"torque" if how in ("revolute", "screw") else "force": 0.4, "smooth": 0.3}
+            if how == "prismatic" and self._is_cut_free and rng.random() < 0.7:
+                joint["friction"] = {"coefficient": 0.2, "length": "2*l", "smooth": 0.3}
         if extra == "armature":
             joint["armature"] = "I/2" if how in ("revolute", "screw") else "m/2"
         if extra == "drive":

@@ -966,7 +966,7 @@ def _in_joint(body: dict, now: Any, o: Any, s: Any) -> list[Load]:
 
 
 def _smooth(law: dict, now: Any, rate: float) -> float:
-    """T tanh(s'/v) of dry friction in a joint."""
+    """T tanh(s'/v) of dry friction of a given size in a joint."""
     size = law.get("torque", law.get("force"))
     return 0.0 if size is None else _number(now.value(size)) * float(np.tanh(rate / _number(now.value(law["smooth"]))))
 
@@ -1170,6 +1170,41 @@ def frictions(o: Any, now: Any, rows: list) -> list[tuple[int, np.ndarray]]:
     return found
 
 
+def at_ends(o: Any, now: Any, s: Any) -> list[tuple[tuple[str, int], np.ndarray]]:
+    """((body, which end), force per unit of |N| there) of each guide with a length, both ends alike along the way."""
+    found = []
+    for name in o.bodies:
+        law = now.model.bodies[name].get("joint", {}).get("friction")
+        if isinstance(law, dict) and "length" in law:
+            column = sum(load.on(o, now) for load in _along_guide(now.model.bodies[name], now))
+            found += [((name, 1), column), ((name, -1), column)]
+    return found
+
+
+def _along_guide(body: dict, now: Any) -> list[Load]:
+    """What friction does for a unit of |N|: - mu tanh(s'/v) along the way, the opposite on the parent."""
+    j, name = body["joint"], body["name"]
+    law, parent = j["friction"], now.model.parent(body)
+    rate = float(jet(now.value(j["displacement"])).c[1][0])
+    push = -_number(now.value(law["coefficient"])) * float(np.tanh(rate / _number(now.value(law["smooth"]))))
+    e = _now(seat(now, body)[1]) @ _axis(now, j)
+    p, R = now.poses[name]
+    point = _now(p + matmul(R, now.of_body(name, j["point"]))) if "point" in j else _now(p)
+    both = [(name, 1), (parent, -1)] if parent else [(name, 1)]
+    return [Load(f"guide {name}", b, point, sign * push * e, np.zeros(3)) for b, sign in both]
+
+
+def end_of_guide(o: Any, solved: Any, s: Any, name: str, end: int, kept: list[int], lam: np.ndarray) -> float:
+    """N/2 + M/L or N/2 - M/L."""
+    columns = np.zeros((6 * len(o.bodies) + len(o.names), len(kept)))
+    for k, i in enumerate(kept):
+        if solved.rows[i].owner == name:
+            columns[:, k] = solved.J[i]
+    own = _of_joint(name, o, solved.now, s, columns)
+    N, M = (float(own[f"reaction_{x}({name})"][0] @ lam) for x in ("n", "couple"))
+    return N / 2 + end * M / solved.now.model.number(solved.now.model.bodies[name]["joint"]["friction"]["length"])
+
+
 def _by_euler(o: Any, now: Any, constraint: dict, row: Any) -> np.ndarray:
     """Force for a unit of (T_1 + T_2)/2 with T_1 = e^(mu phi) T_2: half of T_2 - T_1 on each side, along the slip."""
     one, two = (rate for rate, *_ in _string("", constraint, now, o))
@@ -1361,7 +1396,7 @@ def reactions(o: Any, solved: Any, s: Any) -> dict[str, float]:
                 columns[:, k] = solved.J[kept[k]]
             own = _of_joint(name, o, now, s, columns)
             for key, x in sure({key: g for key, (g, _) in own.items()}).items():
-                found[key] = x + own[key][1]
+                found[key] = x + own[key][1] + _rubbed_along(name, key, solved)
     for name, constraint in now.model.constraints.items():
         mine = [k for k, i in enumerate(kept) if solved.rows[i].owner == name]
         units = np.eye(len(kept))
@@ -1376,6 +1411,14 @@ def reactions(o: Any, solved: Any, s: Any) -> dict[str, float]:
             q = row.owner[6:] if row.owner.startswith("drive ") else now.model.constraints[row.owner]["coordinate"]
             found |= sure({f"drive({q})": np.eye(len(kept))[k]})
     return {key: x for key, x in found.items() if abs(x) < 1e9 * size}
+
+
+def _rubbed_along(name: str, key: str, solved: Any) -> float:
+    """What the friction of a guide adds to the force of its joint along an axis."""
+    P, axis = solved.pressed.get(f"guide {name}", 0.0), key.partition("(")[0].removeprefix("reaction_")
+    if not P or axis not in ("x", "y", "z"):
+        return 0.0
+    return P * float(_along_guide(solved.now.model.bodies[name], solved.now)[0].force["xyz".index(axis)])
 
 
 def _rubbed(name: str, constraint: dict, now: Any, pressed: float) -> dict[str, float]:

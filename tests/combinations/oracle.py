@@ -362,7 +362,7 @@ class Oracle:
             if row.owner.startswith("drive "):
                 gamma[i] = -drives[row.owner[6:]][2]
         M, F = self._masses(now, s)
-        rubbing = laws.frictions(self, now, rows)
+        rubbing = [*laws.frictions(self, now, rows), *laws.at_ends(self, now, s)]
 
         def found(extra: np.ndarray) -> Solved:
             lam, z, sure = self._kkt(M, F + extra, J, J.T, gamma)
@@ -371,8 +371,8 @@ class Oracle:
         bare = found(np.zeros(len(F)))
         if not rubbing:
             return self._held(bare)
-        N0 = self._pressed(bare, rubbing)
-        A = np.array([self._pressed(found(column), rubbing) - N0 for _, column in rubbing]).T
+        N0 = self._pressed(bare, rubbing, s)
+        A = np.array([self._pressed(found(column), rubbing, s) - N0 for _, column in rubbing]).T
         kept = []
         for signs in itertools.product([1.0, -1.0], repeat=len(rubbing)):
             D = np.eye(len(rubbing)) - A * np.array(signs)
@@ -384,7 +384,9 @@ class Oracle:
         if not kept or any(not np.allclose(kept[0], x) for x in kept):
             raise NoAnswer(f"friction has {len(kept)} answers")
         solved = found(sum(P * column for P, (_, column) in zip(kept[0], rubbing, strict=True)))
-        solved.pressed = {rows[i].owner: P for P, (i, _) in zip(kept[0], rubbing, strict=True)}
+        for P, (i, _) in zip(kept[0], rubbing, strict=True):
+            owner = rows[i].owner if isinstance(i, int) else f"guide {i[0]}"
+            solved.pressed[owner] = solved.pressed.get(owner, 0.0) + P
         return self._held(solved)
 
     def _held(self, solved: Solved) -> Solved:
@@ -392,11 +394,14 @@ class Oracle:
             raise NoAnswer("a contact that would stick is held by too little")
         return solved
 
-    def _pressed(self, solved: Solved, rubbing: list) -> np.ndarray:
-        """The normal forces of the rows that rub."""
+    def _pressed(self, solved: Solved, rubbing: list, s: State) -> np.ndarray:
+        """The normal forces of the rows, and of the ends of guides, that rub."""
         push, lam, null = laws.holding(self, solved)
         found = []
         for i, _ in rubbing:
+            if not isinstance(i, int):
+                found.append(laws.end_of_guide(self, solved, s, *i, push, lam))
+                continue
             k = push.index(i)
             if null.size and np.max(np.abs(null[:, k])) > 1e-7:
                 raise NoAnswer("a normal force that has no single value rubs")
