@@ -402,7 +402,7 @@ def test_readers_of_pages_share_nothing_with_their_writers(house):
     assert shared == {"documents.pages_read": set(), "page.reports_read": {"documents.pages_read"}}
 
 
-FOREIGN = {"documents": 150, "results": 178, "questions": 78, "verbs": 56, "proof": 120, "judge": 99}
+FOREIGN = {"documents": 150, "results": 179, "questions": 78, "verbs": 56, "proof": 120, "judge": 99}
 """room -> names that it takes from others, at most"""
 OF_POSIX = {"resource", "fcntl", "pwd", "grp", "termios", "tty", "pty", "syslog"}
 NAMED = re.compile(rf"\b(?:{'|'.join(sorted(OF_POSIX))})\b")  # only sources with such a word are parsed

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
-from itertools import islice
+from itertools import groupby, islice
 from math import isfinite
 from typing import Any
 
@@ -441,6 +441,7 @@ ENERGY_WHEN = re.compile(rf"(?<![A-Za-z_])T\s*(?:\^|_)\s*\{{?\s*(?:(?P<later>\+|
 OF_IMPACT = re.compile(
     rf"_\s*\{{?\s*{_WORD}(?:after|before)\b|_after'|Lambda_|T_(?:before|after)\b|\bimpulse(?:_[xyz])?\s*\("
 )
+OF_CASES = re.compile(r"\b(?:D_(?:nn|nt|tt)|p_s|v_s|a_[sb])\b")  # letters of an impact that rubs
 SAYS_NOTHING = "it holds whatever impulses and speeds are"
 ENERGIES = ("T_before", "T_after")
 MOST_CONTACTS = 4  # of a model of which also several that close at once are meant
@@ -468,7 +469,7 @@ class OfImpact:
         """The equation in each impact that has its names, the simplest first; none where it is of no impact."""
         ending = [contact.name for contact in case.model.contacts if contact.unilateral]
         text = _named_when(given)
-        if not ending or not OF_IMPACT.search(text):
+        if not ending or not (OF_IMPACT.search(text) or OF_CASES.search(text)):
             return
         written = case.reading.read(text, defined)
         if not _further(case, written) and not any(call.name.startswith("impulse") for call in written.calls):
@@ -481,23 +482,24 @@ class OfImpact:
         further = [name for name in ending if name not in named]
         several = [[*named, name] for name in further] if len(ending) <= MOST_CONTACTS else []
         tried = [*([named] if named else []), *several, *([ending] if len(ending) <= MOST_CONTACTS else [])]
-        for contacts in tried:
-            with suppress(ExpressionError):
-                yield OfImpact.over(case, given, written, tuple(x for x in ending if x in contacts))
+        for contacts in dict.fromkeys(tuple(x for x in ending if x in own) for own in tried):
+            slides = case.impact(contacts)
+            for found in (slides, *slides.others):
+                with suppress(ExpressionError):
+                    yield OfImpact.over(given, written, found)
 
     @staticmethod
-    def over(case: Case, given: str, written: HandEquation, contacts: tuple[str, ...]) -> OfImpact:
-        """The equation in the impact of these contacts.
+    def over(given: str, written: HandEquation, found: ImpactEquations) -> OfImpact:
+        """The equation in an impact, or in one of its courses.
 
         Raises:
             ExpressionError: a name in it is none of that impact.
-            DerivationError: the impact has no equations.
         """
-        found = case.impact(contacts)
-        scope = found.system.scope
+        scope, cases = found.system.scope, found.all_cases
         T = found.kinetic_energy
         later = substituted((T,), dict(zip(found.u, found.after, strict=True)))[0]
-        own = {x.name: x for x in (*found.after, *(row.impulse for row in found.rows))}
+        own: dict[str, Scalar] = {x.name: cases.written_out(x) for x, _ in cases.letters}
+        own |= {x.name: x for x in (*found.after, *found.along, *(row.impulse for row in found.rows))}
         names = {**scope.names, **own, **dict(zip(ENERGIES, (T, later), strict=True))}
 
         def called(call: Call) -> Scalar:
@@ -523,6 +525,7 @@ class OfImpact:
         """The difference with impulses and speeds after it as the impact gives them, with changed parameters."""
         solution = self.equations.solution
         values = substituted(tuple(solution.values()), changed) if changed else tuple(solution.values())
+        difference = substituted((difference,), self.equations.along)[0]
         return substituted((difference,), dict(zip(solution, values, strict=True)))[0]
 
     @cached_property
@@ -531,16 +534,26 @@ class OfImpact:
 
     @property
     def verdict(self) -> Verdict:
-        given, several = self.given, sum(x.unilateral for x in self.system.scope.model.contacts) > 1
+        given = self.given
         if self.holds and self._is_identity:
             return Verdict(given, IMPACT, WRONG, causes=(Cause("other", SAYS_NOTHING, quantity="what is equated"),))
         if self.holds is not False:
-            own = ", ".join(self.equations.contacts)
-            up_to = f"the impact of {own}" if several else ""
-            up_to = f"the impact of {own} as long as it slides on" if self.equations.rubbing else up_to
-            return Verdict(given, IMPACT, RIGHT if self.holds else UNDECIDED, up_to)
+            return Verdict(given, IMPACT, RIGHT if self.holds else UNDECIDED, self.of_contacts + self.within)
         left = short_text(self.solved(self.difference), self.system.scope.positive)
         return Verdict(given, IMPACT, WRONG, difference=left, causes=(self.cause,))
+
+    @property
+    def of_contacts(self) -> str:
+        """ "the impact of floor", where it may be of others, or friction has a part; "" elsewhere."""
+        several = sum(x.unilateral for x in self.system.scope.model.contacts) > 1 or self.equations.own_course
+        return f"the impact of {', '.join(self.equations.contacts)}" if several else ""
+
+    @property
+    def within(self) -> str:
+        """The course of friction in words, with its bounds; "" where there is one."""
+        course = self.equations.own_course
+        name = " as long as it slides on" if course is None or not self.equations.slides else f" where it {course.name}"
+        return "" if course is None else f"{name}, while {' and '.join(course.within)}"
 
     @property
     def _is_identity(self) -> bool:
@@ -611,14 +624,25 @@ def of_impact(
         ExpressionError: it cannot be read.
     """
     try:
-        found = list(OfImpact.of(case, given, defined))
+        found = [list(x) for _, x in groupby(OfImpact.of(case, given, defined), lambda x: x.equations.contacts)]
         if judged is not None:
             formula = next((x for x in map(_in_state, found) if x), "")
             return replace(judged(formula), given=given) if formula else None
-        verdicts = [each.verdict for each in found]
+        verdicts = list(map(_of_one_impact, found))
     except DerivationError as error:
         return Verdict(given, IMPACT, UNDECIDED, reason=error.what)
     return next(filter(None, verdicts), verdicts[0]) if verdicts else _of_other_names(case, given, defined)
+
+
+def _of_one_impact(found: Sequence[OfImpact]) -> Verdict:
+    """The verdict on an equation in an impact: of a contact that rubs, in which of its courses it is right."""
+    verdicts = [each.verdict for each in found]
+    right = [each for each, verdict in zip(found, verdicts, strict=True) if verdict]
+    if not right:
+        return verdicts[0]
+    partly = len(right) < len(right[0].equations.all_cases.courses)
+    within = " or".join(each.within for each in right) if partly else ""
+    return Verdict(found[0].given, IMPACT, RIGHT, right[0].of_contacts + within)
 
 
 def _of_other_names(case: Case, given: str, defined: Mapping[str, Expression] | None) -> Verdict | None:
@@ -631,13 +655,16 @@ def _of_other_names(case: Case, given: str, defined: Mapping[str, Expression] | 
     return Verdict(given, IMPACT, UNDECIDED, reason=reason, unknown=tuple(unknown)) if unknown else None
 
 
-def _in_state(found: OfImpact) -> str:
-    """An equation for one impulse or speed after an impact, with its formula in its place; "": it is no such."""
-    solution, written = found.equations.solution, found.written
-    x = next((x for x in solution if written.left.code == (("name", x.name),)), None)
-    if x is None or written.right.names & {y.name for y in solution}:
-        return ""
-    return f"{to_text(solution[x])} = {written.given.partition('=')[2]}"
+def _in_state(found: Sequence[OfImpact]) -> str:
+    """An equation for one impulse or speed after an impact, with its formula (of each course) there; "": no such."""
+    value: Scalar = 0
+    for each in found:
+        solution = {**each.equations.solution, **each.equations.along}
+        x = next((x for x in solution if each.written.left.code == (("name", x.name),)), None)
+        if x is None or each.written.right.names & {y.name for y in solution}:
+            return ""
+        value = value + each.solved(x) * each.equations.counts
+    return f"{to_text(value)} = {found[0].written.given.partition('=')[2]}"
 
 
 def impact_judged(case: Case, verdict: Verdict, defined: Mapping[str, Expression] | None) -> JudgedEquation | None:

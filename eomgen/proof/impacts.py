@@ -8,9 +8,10 @@ the same jump by the law in numbers (complementarity) where it pushes
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from functools import cached_property, partial
-from itertools import pairwise
+from itertools import pairwise, product
 from random import Random
 from typing import Any
 
@@ -25,7 +26,7 @@ from eomgen.model import PointForce
 from eomgen.proof.check import Check, Tally
 from eomgen.proof.declared_loads import fluids_carried
 from eomgen.proof.states import real_state
-from eomgen.symbolic.expression import Node, Scalar, State, Vector, jacobian
+from eomgen.symbolic.expression import Node, Scalar, State, Vector, jacobian, substituted, symbols_of
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 
 SEEDS = (5, 6, 7)
@@ -47,7 +48,13 @@ def impact_checks(found: ImpactEquations) -> Iterator[Check]:
         numbers.add(f"state {seed}", partial(_jumps_otherwise, found, state))
         for body in found.of_joints:
             bodies.add(f"{body}, state {seed}", partial(_body_unbalanced, found, body, state, after))
-    for tally in (momenta, speeds, energies, numbers, bodies):
+    cases = Tally("each case of friction is that of Routh's graph within its bounds", "the graph in doubles, momenta")
+    states = _states_of_cases(found) if found.others else {}
+    for each in (found, *found.others) if found.others else ():
+        name = SLIDES_ON if each.course is None else each.course.name
+        if name in states:
+            cases.add(name, partial(_graph_otherwise, found, each, states[name]))
+    for tally in (momenta, speeds, energies, numbers, bodies, cases):
         yield from tally.checks()
 
 
@@ -218,6 +225,167 @@ def _jumps_otherwise(found: ImpactEquations, state: State) -> str:
     raise NoValue("nothing is approached, an impulse would pull, or sliding stops")
 
 
+# -------- cases of a contact that rubs ------------------------------------------------------------------------
+# D, v of a contact in the plane -> the corner of Routh's graph and its end, found by halving
+
+LEAST_DRAWN, DRAWN = 4, 30  # places at which cases are looked for
+SLIPS = (-3.0, -2.0, -1.2, -0.7, -0.4, -0.2, 0.1, 0.3, 0.6, 1.0, 1.5, 2.5)  # v_t for v_n = -1
+LESS_ROUGH = 5  # times less friction, at every other of these states
+SLIDES_ON = "slides on"
+FARTHEST, HALVINGS = 1e6, 200
+
+
+@dataclass(frozen=True)
+class RouthGraph:
+    """v_n and v_t by the normal impulse p: friction F up to the corner p_s, then G, the nearest allowed to sticking.
+
+    Args:
+        D: changes of (v_n, v_t) for unit impulses, 2 x 2.
+        v: (v_n, v_t) before it.
+    """
+
+    D: np.ndarray
+    v: np.ndarray
+    mu: float
+
+    @cached_property
+    def frictions(self) -> tuple[float, float]:
+        still = -float(self.D[1, 0] / self.D[1, 1])
+        return -self.mu * float(np.sign(self.v[1])), max(-self.mu, min(self.mu, still))
+
+    @cached_property
+    def corner(self) -> float:
+        slows = float(self.D[1] @ [1.0, self.frictions[0]])
+        return float(-self.v[1] / slows) if self.v[1] * slows < 0 else 0.0 if self.v[1] == 0 else math.inf
+
+    def impulses(self, p: float) -> np.ndarray:
+        F, G = self.frictions
+        return np.array([p, F * min(p, self.corner) + (G * (p - self.corner) if p > self.corner else 0.0)])
+
+    def speeds(self, p: float) -> np.ndarray:
+        return np.asarray(self.v + self.D @ self.impulses(p))
+
+    def work(self, p: float) -> float:
+        """Integral of v_n dp, by the trapezes of its corners."""
+        ends = [0.0, min(p, self.corner), p]
+        v = [float(self.speeds(x)[0]) for x in ends]
+        return sum((b - a) * (x + y) / 2 for a, b, x, y in zip(ends, ends[1:], v, v[1:], strict=False))
+
+    def end(self, e: float, law: str) -> tuple[float, float]:
+        """(p at the end of compression, at that of the restitution).
+
+        Raises:
+            NoValue: one does not come.
+        """
+        pressed = _first(lambda p: float(self.speeds(p)[0]), 0.0)
+        if law == "poisson":
+            return pressed, (1 + e) * pressed
+        least = (1 - e * e) * self.work(pressed)
+        reached = {"newton": lambda p: self.speeds(p)[0] + e * self.v[0], "energetic": lambda p: self.work(p) - least}
+        return pressed, _first(reached[law], pressed)
+
+    def name(self, e: float, law: str) -> str:
+        """The course: slides on, or what it does from which phase on."""
+        pressed, end = self.end(e, law)
+        if end <= self.corner:
+            return SLIDES_ON
+        does = "sticks" if abs(self.frictions[1]) < self.mu else "slides back"
+        return f"{does} from the {'compression' if self.corner < pressed else 'restitution'} on"
+
+
+def _first(signed: Callable[[float], float], low: float) -> float:
+    """Where what is negative at first becomes 0, by halving.
+
+    Raises:
+        NoValue: it does not.
+    """
+    high = max(2 * low, 1.0)
+    while signed(high) < 0:
+        high *= 2
+        if high > FARTHEST:
+            raise NoValue("no impulse ends it")
+    for _ in range(HALVINGS):
+        middle = (low + high) / 2
+        if middle in (low, high):
+            break
+        low, high = (middle, high) if signed(middle) < 0 else (low, middle)
+    return high
+
+
+def _states_of_cases(found: ImpactEquations) -> dict[str, list[tuple[State, RouthGraph, float]]]:
+    """{course: (a state in which the graph takes it, that graph, e), some of them}, for those that come up.
+
+    Args:
+        found: as long as it slides on; where D_nt = 0 both phases in which it sticks are one course.
+    """
+    known: dict[str, list[tuple[State, RouthGraph, float]]] = {}
+    wanted = {each.name for each in found.cases.courses}
+    for seed in range(DRAWN):
+        if wanted <= set(known) and seed >= LEAST_DRAWN:
+            break
+        for name, drawn in _drawn_cases(found, seed):
+            name = name if name in wanted else name.partition(" from ")[0]
+            if name in wanted:
+                known.setdefault(name, []).append(drawn)
+    return known
+
+
+def _drawn_cases(found: ImpactEquations, seed: int) -> Iterator[tuple[str, tuple[State, RouthGraph, float]]]:
+    """(course, (state, graph, e)) of one random place with several speeds (v_n, v_t) = (-1, v_t)."""
+    state, first, n = real_state(found.system, Random(seed)), found.rows[0], len(found.u)
+    rubs = found.rubbing[first.name]
+    for symbol in symbols_of((rubs.mu,)) if seed % 2 else ():
+        state = {**state, symbol: state[symbol] / LESS_ROUGH}
+    mu, e = (abs(float(x)) for x in _numbers((rubs.mu, 0 if first.e is None else first.e), state))
+    M, rows = _by_steps(
+        found, (first.row.velocity, first.row.sliding, *(x.row.velocity for x in found.rows[1:])), state
+    )
+    J, u = rows[:, :-1], np.array([float(state[x]) for x in found.u])
+    k = len(J) - 2
+    whole = np.block([[M, -J[2:].T], [J[2:], np.zeros((k, k))]])
+    columns = np.linalg.solve(whole, np.vstack([J[:2].T, np.zeros((k, 2))]))[:n]
+    u = u + np.linalg.solve(whole, np.concatenate([np.zeros(n), -(J[2:] @ u + rows[2:, -1])]))[:n]
+    D, v = J[:2] @ columns, J[:2] @ u + rows[:2, -1]
+    for slip in SLIPS:
+        wanted = np.array([-1.0, slip])
+        speeds = u + columns @ np.linalg.solve(D, wanted - v)
+        graph = RouthGraph((D + D.T) / 2, wanted, mu)
+        with suppress(NoValue):
+            moved = dict(zip(found.u, map(fifty_digits().number, speeds.tolist()), strict=True))
+            yield graph.name(e, found.law), ({**state, **moved}, graph, e)
+
+
+def _by_steps(found: ImpactEquations, velocities: tuple[Scalar, ...], state: State) -> tuple[np.ndarray, np.ndarray]:
+    """(M by differences of T, rows (J, sigma) of velocities) at a state, in doubles: of speeds one larger."""
+    u, n, scalars = found.u, len(found.u), (found.kinetic_energy, *velocities)
+
+    def at(*faster: int) -> np.ndarray:
+        moved = {u[i]: state[u[i]] + faster.count(i) for i in faster}
+        return np.array([float(x) for x in _numbers(scalars, {**state, **moved})])
+
+    here, by_one = at(), [at(i) for i in range(n)]
+    M = np.array([[at(i, j)[0] - by_one[i][0] - by_one[j][0] + here[0] for j in range(n)] for i in range(n)])
+    J = np.array([x[1:] - here[1:] for x in by_one]).T
+    return M, np.hstack([J, (here[1:] - J @ [float(state[x]) for x in u])[:, None]])
+
+
+def _graph_otherwise(found: ImpactEquations, each: ImpactEquations, at: list[tuple[State, RouthGraph, float]]) -> str:
+    """Message if the formulas of a case are not those of the graph, its bounds not its own, or its loss another; ""."""
+    (state, graph, e), *_ = at
+    after = _solved(each, state)
+    velocities = (found.rows[0].row.velocity, found.rows[0].row.sliding)
+    later = [float(x) for x in _numbers(velocities, {**state, **_later(each, after)})]
+    due = graph.speeds(graph.end(e, found.law)[1])
+    if np.max(np.abs(later - due)) > tolerances.CARRIED * (1 + np.max(np.abs(due))):
+        return f"(v_n, v_t) after it are {later}, by the graph {due.tolist()}"
+    for course, (there, *_) in product(found.cases.courses, at):
+        sides = _numbers(tuple(found.cases.written_out(x) for pair in course.bounds for x in pair), there)
+        within = all(a <= b for a, b in zip(sides[::2], sides[1::2], strict=True))
+        if within is not (course.name == (SLIDES_ON if each.course is None else each.course.name)):
+            return f"the bounds of '{course.name}' {'hold' if within else 'fail'} there"
+    return _unbalanced(each, state, after) or _lost_otherwise(each, state, after)
+
+
 # -------- verdicts --------------------------------------------------------------------------------------------
 
 
@@ -230,9 +398,9 @@ def sides_differ(found: ImpactEquations, difference: Scalar) -> bool:
         difference: left minus right, over impulses and speeds before and after it.
     """
     unknowns = (*found.after, *(row.impulse for row in found.rows))
-    for seed in SEEDS:
-        state = real_state(found.system, Random(seed))
-        solved = dict(zip(unknowns, _by_differences(found, state), strict=True))
+    (difference,) = substituted((difference,), found.along)
+    for state, values in _solved_by_differences(found):
+        solved = dict(zip(unknowns, values, strict=True))
         (terms,) = jacobian((difference,), unknowns)
         value, *slopes = _numbers((difference, *terms), {**state, **solved})
         size = 1 + sum(abs(slope * solved[x]) for slope, x in zip(slopes, unknowns, strict=True))
@@ -241,28 +409,45 @@ def sides_differ(found: ImpactEquations, difference: Scalar) -> bool:
     return False
 
 
+def _solved_by_differences(found: ImpactEquations) -> Iterator[tuple[State, list[Any]]]:
+    """(state, speeds after it and impulses there), several; of a course of friction one within its bounds.
+
+    Raises:
+        NoValue: no such state comes up.
+    """
+    if found.slides is None or found.course is None:
+        for seed in SEEDS:
+            state = real_state(found.system, Random(seed))
+            yield state, _by_differences(found, state)
+        return
+    known = _states_of_cases(found.slides)
+    if found.course.name not in known:
+        raise NoValue(f"no state was found in which it {found.course.name}")
+    (state, graph, e), *_ = known[found.course.name]
+    M, rows = _by_steps(found, tuple(row.row.velocity for row in found.rows), state)
+    J, n, k = rows[:, :-1], len(found.u), len(rows) - 2
+    own = graph.impulses(graph.end(e, found.law)[1])
+    whole = np.block([[M, -J[2:].T], [J[2:], np.zeros((k, k))]])
+    held = J[2:] @ [float(state[x]) for x in found.u] + rows[2:, -1]
+    change = np.linalg.solve(whole, np.concatenate([J[:2].T @ own, -held]))
+    values = [*(change[:n] + [float(state[x]) for x in found.u]), *own, *change[n:]]
+    yield state, [fifty_digits().number(float(x)) for x in values]
+
+
 def _by_differences(found: ImpactEquations, state: State) -> list[Any]:
     """(speeds after it, impulses) at a state, in doubles."""
     n, k, u = len(found.u), len(found.rows), found.u
     velocities = tuple(row.row.velocity for row in found.rows)
     sliding = tuple(0 if row.rubs is None else row.row.sliding for row in found.rows)
-    scalars = (found.kinetic_energy, *velocities, *sliding)
-    factors = [0.0 if row.rubs is None else float(_numbers((row.rubs.factor,), state)[0]) for row in found.rows]
-
-    def at(*faster: int) -> np.ndarray:
-        moved = {u[i]: state[u[i]] + faster.count(i) for i in faster}
-        return np.array([float(x) for x in _numbers(scalars, {**state, **moved})])
-
-    here, by_one = at(), [at(i) for i in range(n)]
-    whole, right = np.zeros((n + k, n + k)), np.zeros(n + k)
-    for i in range(n):
-        for j in range(n):
-            whole[i, j] = at(i, j)[0] - by_one[i][0] - by_one[j][0] + here[0]
-        slopes = by_one[i][1:] - here[1:]
-        whole[n:, i] = slopes[:k]
-        whole[i, n:] = -(slopes[:k] + factors * slopes[k:])
+    factors = np.array(
+        [0.0 if row.rubs is None else float(_numbers((row.rubs.factor,), state)[0]) for row in found.rows]
+    )
+    M, rows = _by_steps(found, (*velocities, *sliding), state)
+    J, here = rows[:k, :-1], rows[:, :-1] @ [float(state[x]) for x in u] + rows[:, -1]
+    whole = np.block([[M, -(J + factors[:, None] * rows[k:, :-1]).T], [J, np.zeros((k, k))]])
+    right = np.zeros(n + k)
     e = [0.0 if row.e is None else float(_numbers((row.e,), state)[0]) for row in found.rows]
-    right[n:] = -(1 + np.array(e)) * here[1 : 1 + k]
+    right[n:] = -(1 + np.array(e)) * here[:k]
     values = np.linalg.solve(whole, right)
     values[:n] += [float(state[x]) for x in u]
     return [fifty_digits().number(float(x)) for x in values]

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from functools import cached_property
 from typing import Any
 
 from eomgen.documents import (
@@ -11,6 +12,7 @@ from eomgen.documents import (
     Grid,
     Law,
     Name,
+    Piece,
     Reader,
     Result,
     Statement,
@@ -26,9 +28,12 @@ from eomgen.mechanics.statics import ContactsAtStart
 from eomgen.model import Model
 from eomgen.proof import Certificate, impact_checks
 from eomgen.resources import doing
+from eomgen.study import MotionFromStart
+from eomgen.symbolic.expression import Node, Scalar
 from eomgen.symbolic.print import to_text
 
 LOSS = Law("T_before - T_after", r"T^{-} - T^{+}")
+AT_MOST = Law("<=", r"\leq")
 
 
 @dataclass(frozen=True)
@@ -51,7 +56,7 @@ class ImpactResult(Result):
     @property
     def derivation(self) -> Document:
         """Document with the equations of the impact, and their solution."""
-        return document_of(self.model, "impact", (self._equations_step, self._solution_step))
+        return document_of(self.model, "impact", (self._equations_step, self._solution_step, *self._cases_step))
 
     @property
     def _reader(self) -> Reader:
@@ -111,6 +116,56 @@ class ImpactResult(Result):
         )
         return Step("impulses", "Impulses, speeds and loss", statements)
 
+    @property
+    def _cases_step(self) -> tuple[Step, ...]:
+        """The cases of a contact that rubs, each with its bounds, and which of them the model's numbers choose."""
+        found, reader, cases = self.equations, self._reader, self.equations.cases
+        if not cases.courses:
+            return ()
+        (name,), first = found.contacts, cases.courses[0]
+        statements: list[Statement] = [
+            prose(f"What stands above holds while {name} slides on, where ", *_within(first.bounds), ".")
+        ]
+        if cases.letters:
+            statements += [
+                prose(
+                    "D is what unit impulses change of v_n and v_t. By the normal impulse v_n grows by a, while it"
+                    " slides (the size of v_t by a_t), sticks (s), slides back (b). At p_s, with v_s, sliding ends:"
+                ),
+                *page(reader, cases.letters[:5]),
+                *map(Formula, cases.letters[5:]),
+            ]
+        for each, course in zip(found.others, cases.courses[1:], strict=True):
+            impulses = [row.impulse for row in each.rows[:2]]
+            statements.append(prose(f"{name} {course.name}, where ", *_within(course.bounds), ":"))
+            if cases.short:
+                known = [(x, each.solution[x]) for x in (*impulses, *each.after)]
+                statements += page(reader, [*known, (LOSS, each.loss)])
+            else:
+                statements += map(Formula, zip(impulses, course.impulses, strict=True))
+        if cases.letters:
+            statements.append(prose("In these cases the speeds after the impact are those that the impulses make:"))
+            statements += page(reader, list(zip(found.after, self._changed, strict=False)))
+            statements += [Formula((LOSS, loss)) for loss in found.loss_in_letters]
+        if self.chosen:
+            statements.append(prose(f"At the first impact from the start of the model {name} {self.chosen}."))
+        return (Step("cases", "Cases", tuple(statements)),)
+
+    @property
+    def _changed(self) -> tuple[Scalar, ...]:
+        """Speeds after it in the impulses of a contact that rubs."""
+        rows = self.equations.others[0].rows
+        return self.equations.changed([row.impulse for row in rows[:2]])
+
+    @cached_property
+    def chosen(self) -> str:
+        """Name of the case at the first impact from the model's start; "" where there is none, or parameters lack."""
+        found, (name, *_) = self.equations, self.equations.contacts
+        if not found.cases.courses:
+            return ""
+        at = MotionFromStart(self.model, False).before_closing(name)
+        return found.course_at(at) if at else ""
+
     def _sliding(self, reader: Reader) -> tuple[Statement, ...]:
         """Statements of when a contact that rubs slides on."""
         found: list[Statement] = []
@@ -140,9 +195,42 @@ class ImpactResult(Result):
                 "joints": {name: [to_text(x) for x in vector][:axes] for name, vector in found.of_joints.items()},
                 "after": {u.name: to_text(found.solution[x]) for u, x in zip(found.u, found.after, strict=True)},
                 "loss": to_text(found.loss),
+                "cases": self._cases_entries(),
                 "slides_on": {name: [to_text(x) for x in pair] for name, pair in found.slides_on.items()},
             },
         }
+
+    def _cases_entries(self) -> dict[str, Any]:
+        """The cases of a contact that rubs: their letters, their bounds and formulas, and the chosen one."""
+        found, cases = self.equations, self.equations.cases
+        if not cases.courses:
+            return {}
+        own = [
+            {
+                "name": course.name,
+                "while": list(course.within),
+                "impulses": {
+                    row.name: to_text(each.solution[row.impulse] if cases.short else x)
+                    for row, x in zip(each.rows, course.impulses, strict=False)
+                },
+                "after": {
+                    u.name: to_text(each.solution[x] if cases.short else changed)
+                    for u, x, changed in zip(found.u, found.after, self._changed, strict=False)
+                },
+                **({"loss": to_text(each.loss)} if cases.short else {}),
+            }
+            for each, course in zip(found.others, cases.courses[1:], strict=True)
+        ]
+        slides = list(cases.courses[0].within)
+        letters = {x.name: to_text(formula) for x, formula in cases.letters}
+        return {"letters": letters, "slides_on": slides, "others": own, "chosen": self.chosen}
+
+
+def _within(bounds: Sequence[tuple[Scalar, Scalar]]) -> Iterator[Piece]:
+    """a <= b and c <= d."""
+    for k, sides in enumerate(bounds):
+        left, right = (x if type(x) is Node else to_text(x) for x in sides)
+        yield from (*((" and ",) if k else ()), left, " ", AT_MOST, " ", right)
 
 
 @doing("the equations of the impact")

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
 from random import Random
@@ -544,6 +545,33 @@ class MotionFromStart:
         phase = Study(self.models.of(after.configuration).system)
         exact = {} if _jumps(runs[-1].end, after.values) else carried(moment, phase)
         return StateAtInstant(phase, exact, _numbers(phase, after.t, after.values), moment.method)
+
+    def before_closing(self, contact: str) -> dict[str, float]:
+        """Coordinates and speeds by name just before a contact is hit first, the start included; {} where none is.
+
+        None is where parameters have no values, the motion cannot be followed so far, or it is not hit soon.
+        """
+        from eomgen.simulation import Plan
+
+        if self.models is None:
+            return {}
+        apart = self.models.without_contacts
+        start = StateInNumbers.at_start(apart.system)
+        names = [node.name for node in apart.system.symbols.x]
+        begun = dict(zip(names, start.x.tolist(), strict=True))
+
+        def is_hit(t: float, values: Mapping[str, float]) -> bool:
+            gap, rate = apart.gaps(t, values)[contact]
+            size = max(1.0, *map(abs, values.values()))
+            return abs(gap) <= tolerances.OPEN_GAP * size and rate < -tolerances.COMPUTED * size
+
+        if is_hit(0.0, begun):
+            return begun
+        with suppress(RunFailed, DerivationError):
+            for each in Plan(HORIZONS[0], self.stepping).through(self.models, self._first):
+                if is_hit(each.run.end, each.end):
+                    return {**each.end, "t": each.run.end}
+        return {}
 
     # -- in one phase ----------------------------------------------------------------------------
 

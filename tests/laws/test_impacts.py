@@ -17,6 +17,7 @@ import eomgen
 from eomgen.errors import DerivationError, EomgenError, ModelError, UsageError
 from eomgen.judge.case import Case
 from eomgen.judge.judge import Judge
+from eomgen.judge.printed_answers import OF_CASES
 from eomgen.mechanics.impacts import Hit, ImpactLaw, Jump
 from eomgen.mechanics.impacts.friction import Rubbing, alone, leaving
 from eomgen.mechanics.impacts.law import lemke
@@ -840,7 +841,45 @@ def lines_of(text: str, contacts: str) -> list[str]:
         for name, each in found["joints"].items()
         for a, x in zip("xyz", each, strict=False)
     ]
-    return [*found["equations"], *after, *impulses, *joints, f"T_before - T_after = {found['loss']}"]
+    cases, lines = found["cases"], [*found["equations"], *after, *impulses, *joints]
+    lines += [f"{name} = {x}" for name, x in cases.get("letters", {}).items() if OF_CASES.search(f"{name} {x}")]
+    for each in cases.get("others", ()):
+        lines += [f"Lambda_{name.replace(' ', '_')} = {x}" for name, x in each["impulses"].items()]
+        lines += [f"{u.rstrip(chr(39))}_after{chr(39)} = {x}" for u, x in each["after"].items()]
+        lines += [f"T_before - T_after = {each['loss']}"] if "loss" in each else []
+    return [*dict.fromkeys(lines), f"T_before - T_after = {found['loss']}"]
+
+
+ROUGH_DISC = """
+parameters = { m = 2, r = 0.3, e = 0.5, mu = 0.2, g = 9.81 }
+coordinates = { x = { speed = 1 }, y = { start = 0.5 }, phi = { speed = 3 } }
+bodies.disc.shape = { kind = "sphere", mass = "m", radius = "r" }
+bodies.disc.joint = { kind = "planar", x = "x", y = "y", angle = "phi" }
+[constraints.floor]
+kind = "rolling"
+body = "disc"
+line = { at = [0, 0], normal = [0, 1] }
+slip = true
+unilateral = true
+friction = "mu"
+restitution = "e"
+"""
+ROUGH_ROD = """
+parameters = { m = 1, l = 1, g = 9.81, e = 0.5, mu = 0.3 }
+coordinates = { x = { speed = 0.2 }, y = { start = 1 }, phi = { start = 0.9 } }
+bodies.rod.shape = { kind = "rod", mass = "m", length = "l" }
+bodies.rod.joint = { kind = "planar", point = "center", x = "x", y = "y", angle = "phi" }
+[constraints.floor]
+kind = "support"
+point = "rod.origin"
+normal = [0, 1]
+at = [0, 0]
+unilateral = true
+restitution = "e"
+friction = "mu"
+[impact]
+law = "LAW"
+"""
 
 
 IMPACTS = [
@@ -848,6 +887,7 @@ IMPACTS = [
     pytest.param(TWO_BALLS, "floor", id="one of two"),
     pytest.param(TWO_BALLS, "floor,between", id="both"),
     pytest.param(CRANK, "piston_low", id="closed chain", marks=pytest.mark.slow),
+    pytest.param(ROUGH_DISC, "floor", id="a disc that rubs"),
 ]
 
 
@@ -948,9 +988,95 @@ def test_the_impact_of_what_slides_on_in_formulas():
     model = eomgen.loads(HEAD + text)
     right = "2*m*(x_after' - x') = -0.3*sign(2*x' + l*sin(phi)*phi')*Lambda_floor"
     said = eomgen.verify(model, right)
-    assert said.verdict == "right" and said.up_to == "the impact of floor as long as it slides on"
+    assert said.verdict == "right" and said.up_to.startswith("the impact of floor as long as it slides on, while ")
     assert eomgen.verify(model, right.replace("-0.3", "0.3")).verdict == "wrong"
     assert eomgen.verify(model, "x_after' = x'").verdict == "wrong"
+
+
+def test_a_ball_with_spin_sticks_in_its_impact_up_to_seven_halves_of_its_friction():
+    """|x' + r phi'| <= 7/2 mu (1 + e) |y'|:  x'+ = (5 x' - 2 r phi')/7, Lam_t = -2/7 m (x' + r phi').
+
+    It comes down with y' = -sqrt(2 g (h - r)) and 1.9 m/s of sliding: 7/2 of 0.2 and 1.5 of 1.98 m/s hold that.
+    """
+    found = derived(ROUGH_DISC)["cases"]
+    (sticks,) = found["others"]
+    model = eomgen.loads(HEAD + ROUGH_DISC)
+    assert found["chosen"] == sticks["name"] == "sticks" and found["slides_on"] != sticks["while"]
+    m, r, e, mu, x, y, phi = 2, 0.3, 0.5, 0.2, 1.0, -1.98, 3.0
+    known = {"m": m, "r": r, "e": e, "mu": mu, "x'": x, "y'": y, "phi'": phi}
+    left, right = (value(side, known) for side in sticks["while"][0].split(" <= "))
+    assert (left, right) == pytest.approx((abs(x + r * phi), 3.5 * mu * (1 + e) * -y))
+    assert value(sticks["after"]["x'"], known) == pytest.approx((5 * x - 2 * r * phi) / 7)
+    assert value(sticks["impulses"]["floor t"], known) == pytest.approx(-2 / 7 * m * (x + r * phi))
+    lost = value(sticks["loss"], known)
+    assert lost == pytest.approx(m * (1 - e**2) * y**2 / 2 + m * (x + r * phi) ** 2 / 7)
+    said = eomgen.verify(model, "x_after' = (5*x' - 2*r*phi')/7")
+    assert said.verdict == "right" and said.up_to == f"the impact of floor where it sticks, while {sticks['while'][0]}"
+    assert eomgen.verify(model, "x_after' = (5*x' + 2*r*phi')/7").verdict == "wrong"
+    assert eomgen.verify(model, "y_after' = -e*y'").up_to == "the impact of floor"
+
+
+def value(written: str, known: dict[str, float]) -> float:
+    """Number of a printed formula."""
+    names = {k.replace("'", "_"): v for k, v in known.items()}
+    functions = {"sqrt": math.sqrt, "sin": math.sin, "cos": math.cos, "abs": abs, "sign": np.sign}
+    return float(eval(written.replace("'", "_").replace("^", "**"), functions, names))
+
+
+@pytest.mark.parametrize("law", ["newton", "poisson", "energetic"])
+def test_each_case_of_a_rod_that_rubs_has_the_speeds_of_its_graph_in_formulas(law):
+    """Of random rods exactly the bounds of one case hold: where v_t+ has its sign, is 0, or has the other one.
+
+    The formulas as they are printed against the graph, which follows the impact from corner to corner.
+    """
+    found = derived(ROUGH_ROD.replace("LAW", law))["cases"]
+    rng, seen = np.random.default_rng(21), set()
+    for _ in range(150):
+        phi, (x, y, w), mu, e = rng.uniform(0, 6.28), rng.normal(size=3), rng.uniform(0, 0.8), rng.uniform(0, 1)
+        known = {"m": 1, "l": 1, "mu": mu, "e": e, "phi": phi, "x'": x, "y'": y, "phi'": w}
+        rx, ry = -math.cos(phi) / 2, -math.sin(phi) / 2
+        D = np.array([[1 + 12 * rx * rx, -12 * rx * ry], [-12 * rx * ry, 1 + 12 * ry * ry]])
+        v = np.array([y + rx * w, x - ry * w])
+        if v[0] >= 0 or mu * abs(D[0, 1]) > D[0, 0]:
+            continue
+        for name, text in found["letters"].items():
+            known[name] = value(text, known)
+        assert [known[k] for k in ("v_n", "v_t", "D_nn", "D_nt", "D_tt")] == pytest.approx([*v, *D[0], D[1, 1]])
+        p = alone(D, v, Rubbing("tip", mu, e), law)
+        after = v + D @ p
+        within = [
+            each
+            for each in (None, *found["others"])
+            if all(
+                value(a, known) <= value(b, known)
+                for a, b in (side.split(" <= ") for side in (found["slides_on"] if each is None else each["while"]))
+            )
+        ]
+        (case,) = within
+        name = "slides on" if case is None else case["name"].partition(" from")[0]
+        does = "sticks" if abs(after[1]) < 1e-9 else "slides on" if after[1] * v[1] > 0 else "slides back"
+        assert name == does
+        if case is not None:
+            known["Lambda_floor"] = value(case["impulses"]["floor"], known)
+            known["Lambda_floor_t"] = value(case["impulses"]["floor t"], known)
+            assert (known["Lambda_floor"], known["Lambda_floor_t"]) == pytest.approx(p, abs=1e-9)
+            assert value(case["after"]["x'"], known) == pytest.approx(x + p[1])
+            seen.add(case["name"])
+    assert len(seen) == 4
+
+
+def test_the_formulas_of_each_case_in_letters_are_judged_within_its_bounds():
+    """Lambda = ... p_s ... of each of four cases; what follows from the impulses alone holds in all."""
+    text = ROUGH_ROD.replace("LAW", "poisson")
+    judge, found = Judge(Case(eomgen.loads(HEAD + text))), derived(text)["cases"]
+    for each in found["others"]:
+        said = judge.verdict(f"Lambda_floor = {each['impulses']['floor']}")
+        if "restitution" not in each["name"]:
+            assert said.up_to == f"the impact of floor where it {each['name']}, while {' and '.join(each['while'])}"
+        assert said.verdict == "right" and each["name"] in said.up_to
+    assert judge.verdict("Lambda_floor = p_s + v_s/a_b").verdict == "wrong"
+    assert judge.verdict(f"D_nt = {found['letters']['D_nt']}").up_to == "the impact of floor"
+    assert judge.verdict(f"x_after' = {found['others'][0]['after'][chr(120) + chr(39)]}").up_to == "the impact of floor"
 
 
 # -- impulses of joints ----------------------------------------------------------------------------
