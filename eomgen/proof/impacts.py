@@ -294,7 +294,7 @@ class RouthGraph:
 
 
 def _first(signed: Callable[[float], float], low: float) -> float:
-    """Where what is negative at first becomes 0, by halving.
+    """First place where what is negative at first becomes 0, by halving.
 
     Raises:
         NoValue: it does not.
@@ -588,7 +588,7 @@ def after_impact(D: np.ndarray, v: np.ndarray, contacts: Sequence[Touched], law:
         (own,) = contacts
         return None if v[0] >= 0 or own.size < 2 else stepped_impact(D, v, own.mu, own.e, law)
     blocks = [D[a:b, c:d] for a, b in pairwise(first) for c, d in pairwise(first)]
-    if law == "energetic" or max(first) > 2 * len(contacts) or any(not np.any(block) for block in blocks):
+    if law == "energetic" or any(not np.any(block) for block in blocks):
         return None
     if law == "newton":
         normals = np.minimum(v[first[:-1]], 0.0) * [contact.e for contact in contacts]
@@ -608,7 +608,7 @@ def _iterated(
 ) -> np.ndarray | None:
     """Impulses with p_n >= given, |p_t| <= mu p_n that are the last of sweeps over the contacts; None: there is none.
 
-    p_n <- max(given, p_n - (v_n + returns)/D_nn),   p_t <- p_t - v_t/D_tt within the friction
+    p_n <- max(given, p_n - (v_n + returns)/D_nn),   p_t <- p_t - v_t/|D_tt| within the friction, in space a circle
     """
     p, now = np.zeros(len(v)), np.array(v, dtype=float)
     size = float(np.max(np.abs(v), initial=0.0))
@@ -617,8 +617,9 @@ def _iterated(
         for contact, least, returned in zip(contacts, given, returns, strict=True):
             to = [max(least, p[k] - (now[k] + returned) / D[k, k])]
             if contact.size > 1:
-                most = contact.mu * to[0]
-                to.append(min(max(p[k + 1] - now[k + 1] / D[k + 1, k + 1], -most), most))
+                own, most = slice(k + 1, k + contact.size), contact.mu * to[0]
+                along = p[own] - now[own] / np.linalg.norm(D[own, own], 2)
+                to += (along * min(1.0, most / max(float(np.linalg.norm(along)), tolerances.TINIEST))).tolist()
             for i, x in enumerate(to, k):
                 change, p[i] = D[:, i] * (x - p[i]), x
                 now = now + change

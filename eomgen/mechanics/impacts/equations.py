@@ -362,7 +362,7 @@ class ImpactEquations:
 
     @property
     def others(self) -> tuple[ImpactEquations, ...]:
-        """Those of the courses in which it does not slide on: friction has an impulse of its own."""
+        """Equations of the courses in which it does not slide on: friction has an impulse of its own."""
         return self.cases.others
 
     def _with_cases(
@@ -387,7 +387,7 @@ class ImpactEquations:
         return Cases(courses, letters, others, responses)
 
     def _responses(self) -> tuple[ScalarRow, ...]:
-        """What a unit impulse along n, one along t, and the rows that hold change: of speeds and impulses, 3 columns.
+        """Changes by a unit impulse along n, one along t, and by the rows that hold: of speeds and impulses, 3 columns.
 
         M w - H^T x = n, t, 0,   H w = 0, 0, -(H u + sigma)
         """

@@ -11,13 +11,15 @@ e, where
 
     Newton  v_n = - e v_n(0)     Poisson  p = (1 + e) p_c     Stronge  W = W_c - e^2 W_c,   W = integral of v_n dp
 
-Contacts that act on one another, in the plane: by their speeds at the end of compression (Poisson: and at that of
-restitution, which gives at least e p_c), complementary, with Coulomb's law for the same speeds. Each set of modes
-(open, sticks, slides on, slides back) is tried; several may agree.
+Contacts that act on one another: by their speeds at the end of compression (Poisson: and at that of restitution, which
+gives at least e p_c), complementary, with Coulomb's law for the same speeds, its cone round in space. Each set of modes
+(open, sticks, slides on, slides back; in space slides, along the direction s of the speed that it leaves) is tried, and
+several may agree. So one step stands for each phase: how the directions of sliding turn within it is not followed.
 
 Source: Routh, Dynamics of a System of Rigid Bodies, Elementary Part (1905), art. 187-198; Keller, Impact with friction
 (1986); Batlle, The sliding velocity flow of rigid-body impacts (1996); Stronge, Impact Mechanics (2000), ch. 8;
-Pfeiffer & Glocker, Multibody Dynamics with Unilateral Contacts (1996), ch. 8.
+Pfeiffer & Glocker, Multibody Dynamics with Unilateral Contacts (1996), ch. 8; Moreau, Unilateral contact and dry
+friction in finite freedom dynamics (1988).
 """
 
 from __future__ import annotations
@@ -35,9 +37,14 @@ from eomgen.symbolic.numeric import tolerances
 
 NEWTON, POISSON, ENERGETIC = "newton", "poisson", "energetic"
 MOST_PIECES = 20  # of an impact with friction: compression, sliding, sticking, sliding back, restitution
-MOST_TOGETHER = 5  # contacts that act on one another in one impact
+MOST_TOGETHER, MOST_IN_SPACE = 5, 4  # contacts that act on one another in one impact
 JAMS = 1e6  # times the impulse that ends the approach without friction: no impulse ends it
 HALVINGS = 200  # of an interval with one root
+SIDES = 64  # of a polygon around a round cone, within which impulses that are not single are sought
+STARTS, MOST_STARTS = 4, 64  # directions from which these are sought; where nothing is found
+MOST_TURNS = 12  # steps of Newton's method for directions of sliding
+LARGEST_TURN = 0.5  # of one of them [rad]
+OFF_ANGLE = 1e-3  # by which the search begins aside, where all would be symmetric [rad]
 
 
 @dataclass(frozen=True)
@@ -255,7 +262,7 @@ class Way:
 
 
 def together(D: np.ndarray, v: np.ndarray, contacts: Sequence[Rubbing], law: str) -> tuple[np.ndarray, np.ndarray]:
-    """(impulses (p_n, p_t) of contacts in the plane one after the other, True for each that has one value).
+    """(impulses (p_n, p_t) of the contacts one after the other, True for each that has one value).
 
     Raises:
         DerivationError: several ways agree with the law, or none; too many contacts; another law.
@@ -264,8 +271,10 @@ def together(D: np.ndarray, v: np.ndarray, contacts: Sequence[Rubbing], law: str
     if law == ENERGETIC:
         what = f"the energetic law is one of single contacts, and {names} touch at once"
         raise DerivationError(what, "impact", 'law = "newton" or "poisson", or order = "sequential"')
-    if len(contacts) > MOST_TOGETHER or any(contact.size > 2 for contact in contacts):
-        where = "in space" if any(contact.size > 2 for contact in contacts) else f"of more than {MOST_TOGETHER}"
+    in_space = any(contact.size > 2 for contact in contacts)
+    most = MOST_IN_SPACE if in_space else MOST_TOGETHER
+    if len(contacts) > most:
+        where = f"of more than {most}{' in space' if in_space else ''}"
         what = f"friction in an impact of several contacts at once {where} ({names}) is not derived"
         fix = 'order = "sequential", or no restitution and no [impact]: then friction has no part in impacts'
         raise DerivationError(what, "impact", fix)
@@ -310,9 +319,15 @@ def _one_way(D: np.ndarray, v: np.ndarray, contacts: Sequence[Rubbing], given: n
     """
     size = max(1.0, float(np.max(np.abs(v))))
     ways: list[Way] = []
-    for way in _ways(D, v, contacts, given, returns):
-        same = next((w for w in ways if np.max(np.abs(w.v - way.v)) <= tolerances.CARRIED * size), None)
-        if same is None:
+    found = list(_ways(D, v, contacts, given, returns, STARTS))
+    if not found and any(contact.size > 2 for contact in contacts):
+        found = list(_ways(D, v, contacts, given, returns, MOST_STARTS))
+    for way in found:
+        near = [k for k, w in enumerate(ways) if np.max(np.abs(w.v - way.v)) <= tolerances.CARRIED * size]
+        if near:
+            alike = np.abs(ways[near[0]].p - way.p) <= tolerances.SHARE * size
+            ways[near[0]] = replace(ways[near[0]], sure=ways[near[0]].sure & alike)
+        else:
             ways.append(way)
     if len(ways) == 1:
         return ways[0]
@@ -327,71 +342,195 @@ def _one_way(D: np.ndarray, v: np.ndarray, contacts: Sequence[Rubbing], given: n
 
 
 OPENS, STICKS, SLIDES_ON, SLIDES_BACK, STAYS = "opens", "sticks", "slides on", "slides back", "stays"
-_SENSES = {SLIDES_ON: 1.0, SLIDES_BACK: -1.0}
+SLIDES = "slides"  # in space, along a direction that is to be found
+_SENSES = {SLIDES_ON: np.array([1.0]), SLIDES_BACK: np.array([-1.0])}
 
 
 def _ways(
-    D: np.ndarray, v: np.ndarray, contacts: Sequence[Rubbing], given: np.ndarray, returns: np.ndarray
+    D: np.ndarray, v: np.ndarray, contacts: Sequence[Rubbing], given: np.ndarray, returns: np.ndarray, count: int
 ) -> Iterator[Way]:
-    """Every way, those with one speed after it more than once where it is a border."""
+    """Every way, those with one speed after it more than once where it is a border.
+
+    Args:
+        count: directions of sliding, in space, from which its own is sought.
+    """
     offered = []
     for contact, least in zip(contacts, given, strict=True):
-        rubs = (STICKS, SLIDES_ON, SLIDES_BACK) if contact.mu and contact.size > 1 else (STAYS,)
+        slides = (SLIDES,) if contact.size > 2 else (SLIDES_ON, SLIDES_BACK)
+        rubs = (STICKS, *slides) if contact.mu and contact.size > 1 else (STAYS,)
         own = [(True, mode) for mode in rubs]
         offered.append([*own, *([(False, mode) for mode in rubs] if least > 0 else [(False, OPENS)])])
     for modes in product(*offered):
-        way = _way(D, v, contacts, modes, given, returns)
-        if way is not None:
-            yield way
+        phase = Phase(D, v, tuple(contacts), modes, given, returns)
+        for senses in phase.senses(count):
+            way = phase.way(senses)
+            if way is not None:
+                yield way
 
 
-def _way(
-    D: np.ndarray,
-    v: np.ndarray,
-    contacts: Sequence[Rubbing],
-    modes: Sequence[tuple[bool, str]],
-    given: np.ndarray,
-    returns: np.ndarray,
-) -> Way | None:
-    """The way with these modes (closed, how it rubs); None where it does not agree with the law."""
-    n = len(v)
-    E, right, first = np.zeros((n, n)), np.zeros(n), _places(contacts)
-    at_least: list[np.ndarray] = []  # rows (a, b): a p + b >= 0
-    unit = np.eye(n)
-    for k, contact, (closed, mode) in zip(first, contacts, modes, strict=True):
-        i = list(first).index(k)
-        E[k], right[k] = (D[k], -v[k] - returns[i]) if closed else (unit[k], given[i])
-        at_least.append(np.append(unit[k], -given[i]) if closed else np.append(D[k], v[k] + returns[i]))
-        if contact.size < 2:
-            continue
-        t = k + 1
-        if mode == STICKS:
-            E[t], right[t] = D[t], -v[t]
-            at_least += [np.append(contact.mu * unit[k] + s * unit[t], 0.0) for s in (1.0, -1.0)]
-        elif mode in _SENSES:
-            E[t] = unit[t] + _SENSES[mode] * contact.mu * unit[k]
-            at_least.append(_SENSES[mode] * np.append(D[t], v[t]))
-        else:
-            E[t] = unit[t]
-    lengths = np.linalg.norm(E, axis=1)
-    E, right = E / lengths[:, None], right / lengths
-    U, s, V = np.linalg.svd(E)
-    rank = int(np.sum(s > tolerances.RANK_NEARBY))
-    p = V[:rank].T @ ((U[:, :rank].T @ right) / s[:rank])
-    size = max(1.0, float(np.max(np.abs(right), initial=0.0)))
-    if np.max(np.abs(E @ p - right), initial=0.0) > tolerances.COMPUTED * size:
-        return None
-    rows = np.array(at_least)
-    rows = rows / np.maximum(np.linalg.norm(rows[:, :-1], axis=1), tolerances.TINIEST)[:, None]
-    Z = V[rank:].T
-    found = _inside(rows, p, Z)
-    if found is None:
-        return None
-    if np.max(np.abs(D @ Z), initial=0.0) > tolerances.SHARE:
-        what = f"friction leaves the impact of {_names(contacts)} no single value"
-        raise DerivationError(what, "impact", 'less friction, or order = "sequential"')
-    sure = np.max(np.abs(Z), axis=1, initial=0.0) <= tolerances.SHARE
-    return Way(tuple(mode for _, mode in modes), v + D @ found, found, sure)
+@dataclass(frozen=True)
+class Phase:
+    """A phase of an impact in which each contact has a mode: linear equations for its impulses, sliding along s.
+
+    Args:
+        modes: of each contact (closed, how it rubs).
+        given: normal impulses at least.
+        returns: what is added to v_n of what is closed: it leaves with minus that.
+    """
+
+    D: np.ndarray
+    v: np.ndarray
+    contacts: tuple[Rubbing, ...]
+    modes: tuple[tuple[bool, str], ...]
+    given: np.ndarray
+    returns: np.ndarray
+
+    def senses(self, count: int) -> Iterator[dict[int, np.ndarray]]:
+        """The directions along which contacts slide, {number of it: s}: in space each that a search comes to.
+
+        Args:
+            count: directions from which it is sought.
+        """
+        known = {i: _SENSES[mode] for i, (_, mode) in enumerate(self.modes) if mode in _SENSES}
+        turning = [i for i, (_, mode) in enumerate(self.modes) if mode == SLIDES]
+        if not turning:
+            yield known
+            return
+        found: list[np.ndarray] = []
+        for reached in self._turned(known, turning, self._starts(count)):
+            if all(np.max(np.abs(_wrapped(reached - x))) > tolerances.SAME_PLACE for x in found):
+                found.append(reached)
+                yield {**known, **_directions(turning, reached)}
+
+    def _starts(self, count: int) -> np.ndarray:
+        """Angles from which directions are sought, of those before the impact: each turned by itself, or all alike."""
+        first = _places(self.contacts)
+        own = [k + 1 for k, (_, mode) in zip(first, self.modes, strict=True) if mode == SLIDES]
+        before = np.array([math.atan2(self.v[k + 1], self.v[k]) for k in own]) + OFF_ANGLE
+        turns = [2 * math.pi * k / count for k in range(count)]
+        alike = count ** len(own) > MOST_STARTS or len(own) > 2
+        return np.asarray(
+            before + ([[x] * len(own) for x in turns] if alike else list(product(turns, repeat=len(own))))
+        )
+
+    def _turned(self, known: dict[int, np.ndarray], turning: Sequence[int], angles: np.ndarray) -> Iterator[np.ndarray]:
+        """Angles of leaving along the own direction, v_t x s = 0, v_t . s >= 0, by Newton's method from many at once.
+
+        E p = right; of another angle E' p + E p' = 0, E' = mu s' in the rows of that contact's friction.
+        """
+        first, size = _places(self.contacts), max(1.0, float(np.max(np.abs(self.v))))
+        across = np.array([[first[i] + 1, first[i] + 2] for i in turning])
+        n, m, number = len(self.v), len(turning), np.arange(len(turning))
+        mu = np.array([self.contacts[i].mu for i in turning])
+        base, right, _ = self._equations({**known, **_directions(turning, angles[0])})
+        regular = np.linalg.matrix_rank(base, tol=tolerances.NEARLY_SINGULAR) == n
+        for _ in range(MOST_TURNS):
+            s = np.stack([np.cos(angles), np.sin(angles)], axis=2)
+            turned = np.stack([-s[..., 1], s[..., 0]], axis=2)
+            E = np.repeat(base[None], len(angles), axis=0)
+            E[:, across, (across[:, 0] - 1)[:, None]] = mu[:, None] * s
+            inverse = np.linalg.inv(E) if regular else np.linalg.pinv(E, rcond=tolerances.RANK_NEARBY)
+            p = inverse @ right
+            aside = np.zeros((len(angles), n, m))
+            aside[:, across, number[:, None]] = (mu * p[:, across[:, 0] - 1])[..., None] * turned
+            v, slopes = self.v + p @ self.D.T, -self.D @ inverse @ aside
+            left, along = np.sum(turned * v[:, across], axis=2), np.sum(s * v[:, across], axis=2)
+            done = np.max(np.abs(left), axis=1) <= tolerances.SOLVED * size
+            yield from angles[done & np.all(along >= -tolerances.COMPUTED * size, axis=1)]
+            go = ~done & np.all(np.isfinite(left), axis=1)
+            if not np.any(go):
+                return
+            growth = np.einsum("aik,aikj->aij", turned, slopes[:, across])[go]
+            growth[:, number, number] -= along[go]
+            change = -(np.linalg.pinv(growth, rcond=tolerances.RANK_NEARBY) @ left[go][..., None])[..., 0]
+            largest = np.maximum(np.max(np.abs(change), axis=1, keepdims=True), tolerances.TINIEST)
+            angles = angles[go] + change * np.minimum(1.0, LARGEST_TURN / largest)
+
+    def _equations(self, senses: dict[int, np.ndarray]) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
+        """(E, right, rows) of E p = right, and rows (a, b) of a p + b >= 0."""
+        n, first, unit = len(self.v), _places(self.contacts), np.eye(len(self.v))
+        E, right, at_least = np.zeros((n, n)), np.zeros(n), list[np.ndarray]()
+        for i, (k, contact, (closed, mode)) in enumerate(zip(first, self.contacts, self.modes, strict=True)):
+            leaves = self.v[k] + self.returns[i]
+            E[k], right[k] = (self.D[k], -leaves) if closed else (unit[k], self.given[i])
+            at_least.append(np.append(unit[k], -self.given[i]) if closed else np.append(self.D[k], leaves))
+            along = slice(k + 1, k + contact.size)
+            if mode == STICKS:
+                E[along], right[along] = self.D[along], -self.v[along]
+            else:
+                E[along] = unit[along]
+            if i in senses:
+                E[along] += contact.mu * np.outer(senses[i], unit[k])
+                at_least.append(senses[i] @ np.hstack([self.D[along], self.v[along, None]]))
+        return E, right, at_least
+
+    def way(self, senses: dict[int, np.ndarray]) -> Way | None:
+        """The way along these directions; None where it does not agree with the law.
+
+        Raises:
+            DerivationError: friction leaves it no single value.
+        """
+        E, right, at_least = self._equations(senses)
+        lengths = np.linalg.norm(E, axis=1)
+        E, right = E / lengths[:, None], right / lengths
+        U, s, V = np.linalg.svd(E)
+        rank = int(np.sum(s > tolerances.RANK_NEARBY))
+        p = V[:rank].T @ ((U[:, :rank].T @ right) / s[:rank])
+        size = max(1.0, float(np.max(np.abs(right), initial=0.0)))
+        if np.max(np.abs(E @ p - right), initial=0.0) > tolerances.COMPUTED * size:
+            return None
+        rows = np.array([*at_least, *(self._sides if rank < len(p) else ())])
+        rows = rows / np.maximum(np.linalg.norm(rows[:, :-1], axis=1), tolerances.TINIEST)[:, None]
+        turning = [i for i, (_, mode) in enumerate(self.modes) if mode == SLIDES]
+        Z = V[rank:].T
+        if turning:  # other impulses may not change the speeds: the directions are those of the ones that were found
+            _, s, V = np.linalg.svd(np.vstack([E, self.D]))
+            Z = V[int(np.sum(s > tolerances.RANK_NEARBY)) :].T
+        found = _inside(rows, p, Z)
+        if found is None or not self._holds(found):
+            return None
+        first, after = _places(self.contacts), self.v + self.D @ found
+        if any(senses[i] @ after[first[i] + 1 : first[i] + 3] <= tolerances.COMPUTED * size for i in turning):
+            return None  # it sticks, at the border of its cone
+        if np.max(np.abs(self.D @ Z), initial=0.0) > tolerances.SHARE:
+            what = f"friction leaves the impact of {_names(self.contacts)} no single value"
+            raise DerivationError(what, "impact", 'less friction, or order = "sequential"')
+        sure = np.max(np.abs(Z), axis=1, initial=0.0) <= tolerances.SHARE
+        words = tuple(_in_words(mode, senses.get(i)) for i, (_, mode) in enumerate(self.modes))
+        return Way(words, after, found, sure)
+
+    def _holds(self, p: np.ndarray) -> bool:
+        """True if what sticks does so by impulses inside its cone, which is round in space."""
+        places = zip(_places(self.contacts), self.contacts, self.modes, strict=True)
+        size = tolerances.COMPUTED * max(1.0, float(np.max(np.abs(p))))
+        own = ((k, each) for k, each, (_, mode) in places if mode == STICKS)
+        return all(float(np.linalg.norm(p[k + 1 : k + each.size])) <= each.mu * p[k] + size for k, each in own)
+
+    @property
+    def _sides(self) -> Iterator[np.ndarray]:
+        """Rows (a, b) of what sticks: a p >= 0 of the two sides of its cone, in space of a polygon around it."""
+        for k, contact, (_, mode) in zip(_places(self.contacts), self.contacts, self.modes, strict=True):
+            if mode == STICKS and contact.size > 1:
+                turns = 2 * math.pi * np.arange(SIDES) / SIDES if contact.size > 2 else np.array([0.0, math.pi])
+                rows = np.zeros((len(turns), len(self.v) + 1))
+                rows[:, k] = contact.mu
+                rows[:, k + 1 : k + contact.size] = np.stack([np.cos(turns), np.sin(turns)], axis=1)[
+                    :, : contact.size - 1
+                ]
+                yield from rows
+
+
+def _directions(turning: Sequence[int], angles: np.ndarray) -> dict[int, np.ndarray]:
+    return {i: np.array([math.cos(x), math.sin(x)]) for i, x in zip(turning, angles.tolist(), strict=True)}
+
+
+def _wrapped(angles: np.ndarray) -> np.ndarray:
+    return np.asarray((angles + math.pi) % (2 * math.pi) - math.pi)
+
+
+def _in_words(mode: str, s: np.ndarray | None) -> str:
+    """The mode, in space with the direction in which it slides."""
+    return f"{mode} along ({s[0]:.3g}, {s[1]:.3g})" if mode == SLIDES and s is not None else mode
 
 
 def _inside(rows: np.ndarray, p: np.ndarray, Z: np.ndarray) -> np.ndarray | None:
