@@ -180,9 +180,14 @@ def _stiff(model: Model, modes: ContactModes, freedom: Freedom) -> Iterator[Prob
 
 
 def _misplaced(model: Model) -> Iterator[Problem]:
-    """Constraints whose start is probably a mistake: inside a bowl that is to be rolled on outside."""
+    """Starts that are probably a mistake: inside a bowl that is to be rolled on outside, beyond a stroke."""
     try:
         motion = Motion.of(Scope.of(model))
+        known = not any(coordinate.dependent for coordinate in model.coordinates.values())
+        for name, force in model.forces.items() if known else ():
+            what, fix = force.misplaced(SystemScene(motion, f"forces.{name}"))
+            if what:
+                yield Problem(f"forces.{name}", what, fix=fix)
         for name, constraint in model.constraints.items():
             what, fix = constraint.misplaced(SystemScene(motion, f"constraints.{name}"))
             if what:

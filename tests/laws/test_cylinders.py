@@ -6,9 +6,11 @@ import math
 
 import numpy as np
 import pytest
+from each import each
 
 import eomgen
 from eomgen.errors import ModelError
+from eomgen.study import Checked
 
 pytestmark = pytest.mark.slow
 
@@ -211,3 +213,20 @@ def test_a_valve_of_gas_is_refused_where_it_cannot_be():
     for old, new, message in bad:
         with pytest.raises(ModelError, match=message):
             eomgen.loads((HELD + VALVE).replace("Y", "1").replace('"P"', "1e6").replace(old, new, 1))
+
+
+STROKES = [
+    (0.3, 0.4, ""),
+    (0.6, 0.4, "'gas' starts at x = -0.1 m, below 0"),
+    (0.3, 0.1, "above the stroke of 0.1 m"),
+    (0.5, 0.4, ""),
+]
+
+
+@each("retracted, stroke, words", STROKES)
+def test_check_warns_of_a_piston_that_starts_beyond_its_stroke(retracted, stroke, words):
+    """x = distance - retracted lies between 0 and h."""
+    two = GAS.replace('"A"', '["A", "A"]').replace('"V"', '["V", "V"]').replace('"p_0 + m*g/A"', '["p_0", "p_0"]')
+    text = two.replace("retracted = 0.3", f"retracted = {retracted}\nstroke = {stroke}")
+    found = [problem.what for problem in Checked.of(eomgen.loads(text)).cautions]
+    assert any(words in what for what in found) if words else not found

@@ -122,7 +122,7 @@ def _loads(system: System) -> Iterator[ActingForce]:
         if efforts := Effect.of_joint(system, link.name):
             yield ActingForce(f"what acts in the joint of {link.name}", _pushes(system, efforts), link.name)
     for name, effect in Effect.of_fluids(system).items():
-        yield ActingForce(f"the inertia of the fluid of {name}", _pushes(system, (effect,)), name, kind="inertia")
+        yield ActingForce(f"the inertia of the fluid {name}", _pushes(system, (effect,)), name, kind="inertia")
 
 
 def _inertia(system: System) -> Iterator[ActingForce]:

@@ -383,6 +383,10 @@ class Force(Part):
         """The fluid that moves with its body; None of a force that has none."""
         return None
 
+    def misplaced(self, scene: LoadContext) -> tuple[str, str]:
+        """(what is probably a mistake at the start, its fix); ("", "") where nothing is."""
+        return "", ""
+
     def strands_at(self, scene: LoadContext) -> tuple[Any, ...]:
         """The straight pieces of what pulls along its way; () of others."""
         return ()

@@ -15,6 +15,7 @@ from eomgen.model.kinds import Length, NaturalLength
 from eomgen.model.part import Part, PartRule
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression import Expression, Fraction, Scalar, Vector, as_expression, function, over, sqrt
+from eomgen.symbolic.numeric import tolerances
 
 Many = tuple[Expression, ...]
 Areas = Annotated[Many, ListRule(FormulaRule("m^2", "positive"), 1, 2, single=True)]
@@ -191,6 +192,24 @@ class PressedCylinder(Straight):
         if n == 1 and self.stroke is not None:
             what = f"'{path[1]}' has one chamber, whose volume needs no stroke"
             yield Diagnostic((*path, "stroke"), what, "leave it out, or give two areas", key=True)
+
+    def misplaced(self, scene: LoadContext) -> tuple[str, str]:
+        """A piston that starts beyond an end of its stroke."""
+        x, h = (
+            None if length is None else scene.value_at_start(length)
+            for length in (
+                self.line(scene).length - scene.value(self.retracted),
+                None if self.stroke is None else scene.value(self.stroke),
+            )
+        )
+        if x is None:
+            return "", ""
+        beyond = max(-x, x - h if h is not None else -x)
+        if beyond <= tolerances.COMPUTED * (1 if h is None else h):
+            return "", ""
+        ends = "below 0" if x < 0 else f"above the stroke of {h:.6g} m"
+        what = f"the piston of '{scene.where.partition('.')[2]}' starts at x = {x:.6g} m, {ends}"
+        return what, "give 'retracted' or 'stroke' another value, or start elsewhere"
 
     def law(self, scene: LoadContext, line: Reach) -> Scalar:
         """- (A_1 p_1 - A_2 p_2), pressures against that outside."""
