@@ -316,3 +316,16 @@ def test_friction_under_what_is_all_driven_is_refused_at_rest_and_answered_where
     found = eomgen.solve(model)
     assert found["D"].value == pytest.approx(0.3 * 2 * 9.81)
     assert found.certify().ok is not False
+
+
+@pytest.mark.parametrize(("load", "value"), [("F(p)", 6), ("max(0, p - h)", 3), ("F(p)*max(0, p - h)", 18)])
+def test_a_load_that_is_zero_only_at_these_values_keeps_its_formula(load, value):
+    """Virtual work says A_y = P/2 of a law P in pieces, as equilibrium does, where P is 0 at the given values too."""
+    text = BEAM.replace(
+        "P = 10", 'p = 0\nh = 3\n[tables]\nF = { at = [2, 3, 4], values = [0, 5, 6], between = "linear" }'
+    )
+    text = text.replace("-P", f"-({load})")
+    found = eomgen.statics(eomgen.loads(text))
+    assert found.certify().ok and found.values["reaction_y(A)"] == 0
+    other = eomgen.statics(eomgen.loads(text.replace("p = 0", "p = 4").replace("h = 3", "h = 1")))
+    assert other.values["reaction_y(A)"] == value / 2 and other.exact == found.exact

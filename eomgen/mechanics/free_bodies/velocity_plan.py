@@ -7,6 +7,7 @@ from dataclasses import field, replace
 from dataclasses import field as dataclass_field
 from functools import cached_property, partial
 from itertools import chain
+from random import Random
 from typing import Any
 
 from eomgen.frozen import dataclass
@@ -15,8 +16,8 @@ from eomgen.mechanics.free_bodies.wrenches import Effect
 from eomgen.mechanics.kinematics import VelocityField
 from eomgen.model import BodyPoint, Couple, PointForce, SpreadLoad, is_node
 from eomgen.symbolic.exact import Legibly, readable_all
-from eomgen.symbolic.expression import Fraction, Matrix, Node, Scalar, Vector, is_zero, over, sqrt, substituted
-from eomgen.symbolic.numeric import Work, evaluate, fifty_digits, tolerances
+from eomgen.symbolic.expression import Fraction, Matrix, Node, Scalar, Vector, is_zero, order, over, sqrt, substituted
+from eomgen.symbolic.numeric import Work, evaluate, fifty_digits, has_pieces, is_choice, tolerances
 from eomgen.symbolic.print import to_text
 
 # -------- velocity plan ---------------------------------------------------------------------------------------
@@ -192,7 +193,10 @@ class VelocityPlan:
         return Vector(substituted(self.system.motion.in_ground_axes(vector, axes), self.at))
 
     def vanishes(self, scalars: Sequence[Scalar], beside: Sequence[Scalar] = (1,)) -> bool:
-        """True if all scalars are 0, compared with the largest of `beside`."""
+        """True if all scalars are 0, compared with the largest of `beside`.
+
+        A law in pieces may be 0 here and not elsewhere: any number stands for it, so that only what it does counts.
+        """
         nodes = [x for x in scalars if type(x) is Node]
         if len(nodes) < len(scalars) and not all(is_zero(x) for x in scalars if type(x) is not Node):
             return False
@@ -200,7 +204,21 @@ class VelocityPlan:
             return True
         known = beside if not any(type(x) is Node for x in beside) else self.numbers(beside)
         size = max(map(abs, known), default=0)
-        return all(abs(x) <= tolerances.ZERO_AT_50 * size for x in self.numbers(nodes))
+        if any(abs(x) > tolerances.ZERO_AT_50 * size for x in self.numbers(nodes)):
+            return False
+        return not any(map(has_pieces, nodes)) or self._vanish_for_any_law(nodes, beside)
+
+    def _vanish_for_any_law(self, nodes: Sequence[Node], beside: Sequence[Scalar]) -> bool:
+        """True if scalars are 0 whatever the values of the functions in pieces that stand in them."""
+        laws = [x for x in order((*nodes, *beside)) if is_choice(x)]
+        graph, number = self.system.scope.graph, fifty_digits().number
+        any_value = {law: graph.symbol(f"(law {k})") for k, law in enumerate(laws)}
+        rng = Random(1)
+        parameters = dict(self.parameters) | {x: number(Fraction(rng.uniform(0.5, 2))) for x in any_value.values()}
+        opaque = substituted((*nodes, *beside), any_value)
+        values = evaluate(opaque, parameters, fifty_digits())
+        size = max(map(abs, values[len(nodes) :]), default=0)
+        return all(abs(x) <= tolerances.ZERO_AT_50 * size for x in values[: len(nodes)])
 
     def numbers(self, scalars: Sequence[Scalar]) -> list[Any]:
         """Values of scalars at these parameters, with 50 digits."""

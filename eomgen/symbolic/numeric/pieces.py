@@ -50,6 +50,11 @@ def has_pieces(x: Scalar, of: Sequence[Node] | None = None) -> bool:
     return any(node.op in PIECEWISE and depends_on(node, of) for node in order((x,)))
 
 
+def is_choice(node: Node) -> bool:
+    """True if the node itself has one of several forms, by what stands in it."""
+    return node.op in PIECEWISE or node.op == "select"
+
+
 Choices = tuple[int, ...]
 """Of each node that has pieces: the sign of its argument, or of the difference of both; of samples the place."""
 
