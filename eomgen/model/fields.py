@@ -155,6 +155,11 @@ def in_si(value: Expression | None, unit: Unit | None) -> Expression | None:
     return unit.expression_in_si(value)
 
 
+def is_in_si(raw: Any) -> bool:
+    """True of a raw value that is in SI once it is read: a quantity with a unit of its own, or an Expression."""
+    return isinstance(raw, Expression) or (isinstance(raw, Mapping) and "unit" in raw)
+
+
 def is_mixed(value: Expression, unit: Unit) -> bool:
     """True if a value contains parameters, which are in SI, and has a unit that is not: it may mean two things."""
     return bool(value.names - {"pi", "t"}) and (unit.factor != 1 or unit.pi_power != 0)

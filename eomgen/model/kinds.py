@@ -28,9 +28,12 @@ from eomgen.model.fields import (
     Table,
     TextRule,
     VectorRule,
+    in_si,
+    is_in_si,
 )
 from eomgen.model.part import Part, PartRule, Slot
 from eomgen.model.positions import DocumentPath
+from eomgen.model.quantities import Unit
 from eomgen.model.sampled_laws import TimeLawRule
 from eomgen.symbolic.expression import Expression, Sampled
 from eomgen.symbolic.print import Symbol
@@ -460,12 +463,27 @@ class Limits:
     """The least and the largest value of a joint's variable; None where there is none.
 
     Args:
-        in_si: True if plain numbers are in SI, not in the unit of the coordinate.
+        settled: of each end, True if it is in SI; else it is a plain number in the unit of the coordinate.
     """
 
     low: Expression | None = None
     high: Expression | None = None
-    in_si: bool = False
+    settled: tuple[bool, bool] = (True, True)
+
+    @property
+    def plain(self) -> tuple[Expression, ...]:
+        """The ends that are plain numbers in the unit of the coordinate."""
+        ends = zip((self.low, self.high), self.settled, strict=True)
+        return tuple(x for x, known in ends if x is not None and not known)
+
+    def in_si(self, unit: Unit | None) -> "Limits":
+        """Both ends in SI.
+
+        Args:
+            unit: of plain numbers; None: SI.
+        """
+        low, high = self.settled
+        return Limits(self.low if low else in_si(self.low, unit), self.high if high else in_si(self.high, unit))
 
     @classmethod
     def slots(cls) -> tuple[Slot, ...]:
@@ -475,7 +493,10 @@ class Limits:
 
 @dataclass(frozen=True)
 class LimitsRule:
-    """[least, largest], each a number in the coordinate's unit, an expression in SI, or "inf" where there is none."""
+    """[least, largest], each a number in the coordinate's unit, an expression in SI, or "inf" where there is none.
+
+    A quantity with a unit of its own, { value = 20, unit = "deg" }, is in that.
+    """
 
     item: FormulaRule
 
@@ -488,7 +509,8 @@ class LimitsRule:
             )
             return None
         ends = [None if self._is_endless(x) else self.item.read(x, (*path, i), found) for i, x in enumerate(raw)]
-        return Limits(ends[0], ends[1])
+        plain = [x is not None and not x.names and not is_in_si(given) for x, given in zip(ends, raw, strict=True)]
+        return Limits(ends[0], ends[1], (not plain[0], not plain[1]))
 
     @staticmethod
     def _is_endless(raw: Any) -> bool:

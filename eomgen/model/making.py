@@ -12,7 +12,7 @@ from eomgen.model.checks.names import equations, formulas, missing_point, names,
 from eomgen.model.checks.plausible import bodies, numbers
 from eomgen.model.constraints import Limit
 from eomgen.model.diagnostics import Diagnostic, nearest
-from eomgen.model.fields import Leaf, NameRule, Table, WrittenEquation, in_si
+from eomgen.model.fields import Leaf, NameRule, Table, WrittenEquation
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.base import AXES, DRY_JOINT, SIDES
 from eomgen.model.part import Part, read_part
@@ -338,12 +338,11 @@ def with_limits(model: Any) -> Any:
     for body, part in (model.bodies or {}).items():
         joint: Any = None if part is None else part.joint
         for k, field, limits in () if joint is None else joint.limits_of_variables:
-            unit = _unit_of(model, joint.variable_of(field))
+            settled = limits.in_si(joint.unit_of_limits(field, model.coordinates or {}))
             several = joint.named_contact(body, field)
-            for end in ("low", "high"):
-                bound = getattr(limits, end)
+            for end, bound in (("low", settled.low), ("high", settled.high)):
                 if bound is not None:
-                    values = {"body": body, "variable": k, "bound": in_si(bound, unit), "upper": end == "high"}
+                    values = {"body": body, "variable": k, "bound": bound, "upper": end == "high"}
                     stop = Limit.of_values({**values, "restitution": joint.restitution})
                     found[_free_name(f"{several}_{end}", stop, found)] = stop
     return found
@@ -373,12 +372,6 @@ def _free_name(name: str, stop: Limit, constraints: Mapping[str, Any]) -> str:
     while name in constraints and not isinstance(constraints[name], Limit):
         name += "_"
     return name
-
-
-def _unit_of(model: Any, variable: Expression | None) -> Any:
-    """The declared unit of a coordinate that is a joint's variable; None where there is none."""
-    part = None if variable is None else (model.coordinates or {}).get(variable.text)
-    return None if part is None else part.unit
 
 
 def diagnostics_of(model: Any, found: list[Diagnostic]) -> list[Diagnostic]:
@@ -488,11 +481,9 @@ def _resolved_body(model: Any, name: str, body: Any) -> Any:
 def _with_stop(model: Any, joint: Any) -> Any:
     """A joint whose stops yield, with its limits in SI."""
     law, limits = getattr(joint, "stop", None), getattr(joint, "limits", None)
-    if law is None or limits is None or limits.in_si:
+    if law is None or limits is None or all(limits.settled):
         return joint
-    unit = _unit_of(model, joint.variable_of(joint.limited[0]))
-    low, high = (None if x is None else in_si(x, unit) for x in (limits.low, limits.high))
-    return joint.altered(limits=replace(limits, low=low, high=high, in_si=True))
+    return joint.altered(limits=limits.in_si(joint.unit_of_limits(joint.limited[0], model.coordinates or {})))
 
 
 def _own(point: str) -> str:

@@ -11,7 +11,7 @@ from typing import Any, ClassVar, Self, Union, get_args, get_origin
 from eomgen.errors import ModelError, Problem
 from eomgen.frozen import dataclass
 from eomgen.model.diagnostics import Diagnostic, meant, nearest, shown, unknown_keys, whereabouts
-from eomgen.model.fields import Leaf, WrittenEquation, in_si
+from eomgen.model.fields import Leaf, WrittenEquation, in_si, is_in_si
 from eomgen.model.positions import DocumentPath
 from eomgen.model.quantities import Unit
 from eomgen.symbolic.expression import Expression, other_words
@@ -187,11 +187,11 @@ class Part:
 
 
 def _in_si(cls: Any, values: dict[str, Any], raw: Mapping[str, Any]) -> dict[str, Any]:
-    """The values read, those given in the part's `unit` exactly in SI (an Expression is in SI already)."""
+    """The values read, those given in the part's `unit` exactly in SI (one with a unit of its own is so already)."""
     unit = values.get("unit")
     if unit is None or not cls.in_unit:
         return values
-    fresh = [name for name in cls.in_unit if values.get(name) is not None and not isinstance(raw[name], Expression)]
+    fresh = [name for name in cls.in_unit if values.get(name) is not None and not is_in_si(raw[name])]
     return {**values, **{name: in_si(values[name], unit) for name in fresh}}
 
 

@@ -66,6 +66,37 @@ def test_a_plain_number_is_in_the_unit_of_the_coordinate():
     assert high.bound.value_at({"pi": math.pi}) == pytest.approx(math.pi / 2) and low.bound.text == "lo"
 
 
+def _bounds(angle, limits):
+    """The bounds of a rod on a hinge, q in degrees: those of rigid stops, then those of stops that yield."""
+    text = PENDULUM.replace('angle = "q"', f'angle = "{angle}"').replace('["lo", 90]', limits)
+    assert text.count(limits) == text.count(f'angle = "{angle}"') == 1
+    rigid = eomgen.loads(text)
+    soft = eomgen.loads(text.replace('restitution = "e"', "stop = { stiffness = 1 }"))
+    given = soft.bodies["rod"].joint.limits
+    values = [[c.bound for c in rigid.constraints.values()], [given.low, given.high]]
+    return [[x.value_at({"pi": math.pi}) for x in each] for each in values], rigid.warnings
+
+
+BOUNDS = [
+    ("q", "[-30, 90]", (-math.pi / 6, math.pi / 2), ""),
+    ("q - pi/2", "[-30, 90]", (-math.pi / 6, math.pi / 2), ""),
+    ("lo - 2*q", "[-30, 90]", (-math.pi / 6, math.pi / 2), ""),
+    ("q", '["-pi/6", { value = 1, unit = "rad" }]', (-math.pi / 6, 1), ""),
+    ("q", '[-30, { value = 90, unit = "deg" }]', (-math.pi / 6, math.pi / 2), ""),
+    ("sin(q)", "[-30, 90]", (-30, 90), "-30 is in rad, though 'q' is in deg"),
+    ("sin(q)", '["-pi/6", "pi/2"]', (-math.pi / 6, math.pi / 2), ""),
+]
+
+
+@pytest.mark.parametrize(("angle", "limits", "bounds", "said"), BOUNDS)
+def test_limits_are_in_the_unit_of_the_one_coordinate_or_say_that_they_are_not(angle, limits, bounds, said):
+    """Plain limits of a q + b are in the unit of q, of anything else in SI, with a warning; others in their own."""
+    found, warnings = _bounds(angle, limits)
+    assert found == [pytest.approx(list(bounds))] * 2
+    assert [w.what for w in warnings if "limits of" in w.what and said in w.what] or not said
+    assert bool(said) == any("limits of" in w.what for w in warnings)
+
+
 def test_the_impulses_of_the_stop_and_of_the_hinge_in_closed_form():
     """m l^2/3 (1 + e) w of the stop, m (l/2) (1 + e) w across the rod of the hinge, w^2 = 3 g/l (cos lo - cos q0)."""
     text = (

@@ -378,7 +378,13 @@ def warnings_of(model: Any) -> tuple[Diagnostic, ...]:
     catalog = Catalog(model, ())
     values = _assumed(catalog)
     checks = (_angles(catalog, values), _signs(catalog, values), _weights(catalog, values))
-    more = (_bodiless(catalog, values), _unheld(catalog), _masses_apart(catalog, values), _symbols_twice(catalog))
+    more = (
+        _bodiless(catalog, values),
+        _unheld(catalog),
+        _limits(catalog),
+        _masses_apart(catalog, values),
+        _symbols_twice(catalog),
+    )
     hardly = (_unused(catalog), _guessed(catalog), _overshoots(catalog))
     return (*inferred(catalog).warnings, *(diagnostic for check in (*checks, *more, *hardly) for diagnostic in check))
 
@@ -403,6 +409,22 @@ def _angles(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Diagn
             if size > TURN:
                 what = f"{size:g} in {leaf.whereabouts} is {size:g} rad: {size / TURN:.1f} turns"
                 yield Diagnostic(leaf.path, what, f"for degrees write {_of_pi(size)}", column, len(f"{size:g}"))
+
+
+def _limits(catalog: Catalog) -> Iterator[Diagnostic]:
+    """Diagnostics of plain limits that are taken in SI though coordinates in what they limit are in another unit."""
+    coordinates = catalog.table("coordinates")
+    for body, part in catalog.table("bodies").items():
+        joint: Any = None if part is None else part.joint
+        for field, limits in () if joint is None else joint.given_limits:
+            units = joint.units_in(field, coordinates)
+            plain = [x for x in limits.plain if x.literal != 0]
+            if units and plain and joint.unit_of_limits(field, coordinates) is None:
+                (name, unit), si, text = next(iter(units.items())), joint.unit_of(field), plain[0].text
+                what = f"limits of '{body}': {text} is in {si}, though '{name}' is in {unit.text}: "
+                what += f"'{joint.variable_of(field).text}' is no a*{name} + b"
+                fix = f'write the unit, {{ value = {text}, unit = "{unit.text}" }} or unit = "{si}"'
+                yield Diagnostic(("bodies", body, "joint", "limits"), what, fix)
 
 
 def _terms(expression: Expression) -> Iterator[tuple[float, int]]:

@@ -1,5 +1,6 @@
 """Supports, sliders, guides, clamps, knife edges, and stops of joints."""
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any, ClassVar
@@ -313,11 +314,12 @@ class Limit(Constraint):
         joint = catalog.table("bodies")[self.body].joint
         where = ("bodies", self.body, "joint", "limits")
         ((field, limits),) = ((name, x) for k, name, x in joint.limits_of_variables if k == self.variable)
-        low, high = (None if x is None else x.literal for x in (limits.low, limits.high))
-        if not self.upper and low is not None and high is not None and not low < high:
-            yield Diagnostic(
-                where, f"the limits of '{self.body}' leave nothing between {low} and {high}", "least first"
-            )
+        if self.upper and limits.low is not None and limits.high is not None:
+            settled = limits.in_si(joint.unit_of_limits(field, catalog.table("coordinates")))
+            low, high = (x.value_at({"pi": math.pi}) for x in (settled.low, settled.high))
+            if low is not None and high is not None and not low < high:
+                what = f"the limits of '{self.body}' leave nothing between {limits.low.text} and {limits.high.text}"
+                yield Diagnostic(where, what, "least first")
         given = {name for name, part in catalog.table("coordinates").items() if part is not None and part.driven}
         given |= {part.drives() for part in catalog.table("constraints").values() if part is not None}
         variable = joint.variable_of(field)
@@ -332,7 +334,9 @@ class Limit(Constraint):
         return "N*m*s" if self.gap_unit(catalog.table("bodies")) == "rad" else "N*s"
 
     def gap_unit(self, bodies: Mapping[str, Any]) -> str:
-        return "rad" if bodies[self.body].joint.limited[self.variable].startswith("angle") else "m"
+        joint = bodies[self.body].joint
+        found: str = joint.unit_of(joint.limited[self.variable])
+        return found
 
     def rows(self, scene: LoadContext) -> tuple[ConstraintRow, ...]:
         """s - bound >= 0, of an upper one bound - s >= 0; the push along the joint does the work of a unit times s'."""

@@ -7,10 +7,10 @@ a point of the child (`point`). Everything here is from the (turned) parent's jo
 A column of S or W has six entries, angular part (torque) first, at the joint point, in the child's axes.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, ClassVar
 
-from eomgen.errors import NotYet
+from eomgen.errors import ExpressionError, NotYet
 from eomgen.frozen import dataclass
 from eomgen.model.catalog import Catalog
 from eomgen.model.diagnostics import Diagnostic
@@ -28,8 +28,19 @@ from eomgen.model.kinds import (
 )
 from eomgen.model.part import Part, PartRule
 from eomgen.model.positions import DocumentPath
+from eomgen.model.quantities import Unit
 from eomgen.model.shapes.forms import Form
-from eomgen.symbolic.expression import Expression, Matrix, Pose, Vector, cos, sin
+from eomgen.symbolic.expression import (
+    Expression,
+    Graph,
+    Matrix,
+    Pose,
+    Vector,
+    cos,
+    depends_on,
+    derivative,
+    sin,
+)
 
 # -------- moves -----------------------------------------------------------------------------------------------
 # Moves of a joint, as they are declared: one after another, each in the axes that those before left.
@@ -149,12 +160,18 @@ class Joint(Part):
     @property
     def limits_of_variables(self) -> tuple[tuple[int, str, Limits], ...]:
         """(number of the variable, its field, its limits) of each variable with limits."""
+        if getattr(self, "stop", None) is not None:
+            return ()
+        return tuple((self.limited.index(name), name, limits) for name, limits in self.given_limits)
+
+    @property
+    def given_limits(self) -> tuple[tuple[str, Limits], ...]:
+        """(field of the variable, its limits), of rigid stops and of those that yield."""
         given = getattr(self, "limits", None)
-        if given is None or getattr(self, "stop", None) is not None:
+        if given is None:
             return ()
         each = (given,) if isinstance(given, Limits) else (entry_of(given, name) for name in self.limited)
-        pairs = zip(self.limited, each, strict=True)
-        return tuple((k, name, limits) for k, (name, limits) in enumerate(pairs) if limits is not None)
+        return tuple((name, limits) for name, limits in zip(self.limited, each, strict=True) if limits is not None)
 
     @property
     def frictions(self) -> tuple[tuple[int, str, JointFriction], ...]:
@@ -170,6 +187,27 @@ class Joint(Part):
         """The variable of that field; of `angles2` the second of its angles."""
         found: Expression = entry_of(self, field)
         return found
+
+    @staticmethod
+    def unit_of(field: str) -> str:
+        """The SI unit of the variable of a field, "rad" or "m"."""
+        return "rad" if field.startswith("angle") else "m"
+
+    def unit_of_limits(self, field: str, coordinates: Mapping[str, Any]) -> Unit | None:
+        """The unit of plain limits of a variable a q + b: that of its coordinate q; of any other None, SI.
+
+        Units that do not fit are not meant: with q in mm, q/r is an angle, in radians.
+        """
+        variable, units = self.variable_of(field), self.units_in(field, coordinates)
+        alone = len(units) == 1 and variable.names & coordinates.keys() == units.keys()
+        return units[min(units)] if alone and _is_affine(variable, min(units)) else None
+
+    def units_in(self, field: str, coordinates: Mapping[str, Any]) -> dict[str, Unit]:
+        """The units not of SI of coordinates in a variable, in which it may be given itself."""
+        variable, own = self.variable_of(field), Unit.parse(self.unit_of(field))
+        parts = {} if variable is None else {name: coordinates.get(name) for name in sorted(variable.names)}
+        units = {name: part.unit for name, part in parts.items() if part is not None and part.unit is not None}
+        return {name: u for name, u in units.items() if u.fits(own) and (u.factor != 1 or u.pi_power != 0)}
 
     def named_contact(self, body: str, field: str) -> str:
         """Name of what acts along a variable: that of the body, of several variables arm_angle."""
@@ -250,6 +288,19 @@ def entry_of(part: Any, field: str) -> Any:
     entries = getattr(part, field.rstrip("123"), None) or ()
     number = field[len(field.rstrip("123")) :]
     return entries[int(number) - 1] if number and int(number) <= len(entries) else None
+
+
+def _is_affine(variable: Expression, name: str) -> bool:
+    """True if the rate of an expression by one of its names does not depend on that name."""
+    if variable.text == name:
+        return True
+    graph = Graph()
+    symbols = {each: graph.symbol(each) for each in variable.names if each != "pi"}
+    try:
+        rate = derivative(variable.evaluate({**symbols, "pi": graph.pi}), symbols[name])
+    except ExpressionError:  # a function of samples, or no value
+        return False
+    return not depends_on(rate, (symbols[name],))
 
 
 def vector(components: tuple[Expression, ...] | None, value: ValueOf, default: Vector = Vector.ZERO) -> Vector:

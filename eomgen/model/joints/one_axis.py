@@ -160,7 +160,8 @@ class Revolute(AxisJoint):
         axis: in the turned axes; need not have unit length; None: z.
         torque: on the child, minus on the parent [N m].
         stiffness, damping, rest, armature: - k (s - rest), - d s', and armature s'^2 / 2 to T.
-        limits: [least, largest] of the angle, "inf" for none: rigid stops, in the unit of its coordinate.
+        limits: [least, largest] of the angle, "inf" for none: rigid stops; plain numbers are in the unit of its
+            coordinate q (of `a*q + b`, too; of anything else SI), expressions in SI.
         restitution: of the stops: with this share of its speed it rebounds, 0 to 1 (None: not at all).
         stop: instead of rigid ones stops that yield: { stiffness = k, damping = d } pushes back beyond the limits.
         friction: dry: { torque = T } or { coefficient = mu, radius = r }; `static`, the largest at rest; or `smooth`.
@@ -229,7 +230,8 @@ class Prismatic(AxisJoint):
         angle: the constant angle of the child's axes (about z in the plane, about n in space) [rad].
         force: on the child, minus on the parent [N].
         stiffness, damping, rest, armature: - k (s - rest), - d s', and armature s'^2 / 2 to T.
-        limits: [least, largest] of the displacement, "inf" for none: rigid stops, in the unit of its coordinate.
+        limits: [least, largest] of the displacement, "inf" for none: rigid stops; plain numbers are in the unit of its
+            coordinate q (of `a*q + b`, too; of anything else SI), expressions in SI.
         restitution: of the stops: with this share of its speed it rebounds, 0 to 1 (None: not at all).
         stop: instead of rigid ones stops that yield: { stiffness = k, damping = d } pushes back beyond the limits.
         friction: dry: { force = F } or { coefficient = mu }; `static`, the largest at rest; or `smooth`.
@@ -372,7 +374,8 @@ class Screw(AxisJoint):
         pitch: h, advance per radian [m].
         torque: about n on the child, minus on the parent [N m].
         stiffness, damping, rest, armature: - k (s - rest), - d s', and armature s'^2 / 2 to T.
-        limits: [least, largest] of the angle, "inf" for none: rigid stops, in the unit of its coordinate.
+        limits: [least, largest] of the angle, "inf" for none: rigid stops; plain numbers are in the unit of its
+            coordinate q (of `a*q + b`, too; of anything else SI), expressions in SI.
         restitution: of the stops: with this share of its speed it rebounds, 0 to 1 (None: not at all).
         stop: instead of rigid ones stops that yield: { stiffness = k, damping = d } pushes back beyond the limits.
         friction: dry: { torque = T } or { coefficient = mu, radius = r }; `static`, the largest at rest; or `smooth`.
