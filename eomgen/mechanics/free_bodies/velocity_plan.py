@@ -16,8 +16,8 @@ from eomgen.mechanics.free_bodies.wrenches import Effect
 from eomgen.mechanics.kinematics import VelocityField
 from eomgen.model import BodyPoint, Couple, PointForce, SpreadLoad, is_node
 from eomgen.symbolic.exact import Legibly, readable_all
-from eomgen.symbolic.expression import Fraction, Matrix, Node, Scalar, Vector, is_zero, order, over, sqrt, substituted
-from eomgen.symbolic.numeric import Work, evaluate, fifty_digits, has_pieces, is_choice, tolerances
+from eomgen.symbolic.expression import Fraction, Matrix, Node, Scalar, Vector, is_zero, over, sqrt, substituted
+from eomgen.symbolic.numeric import PiecewiseNodes, Work, evaluate, fifty_digits, has_pieces, tolerances
 from eomgen.symbolic.print import to_text
 
 # -------- velocity plan ---------------------------------------------------------------------------------------
@@ -210,7 +210,7 @@ class VelocityPlan:
 
     def _vanish_for_any_law(self, nodes: Sequence[Node], beside: Sequence[Scalar]) -> bool:
         """True if scalars are 0 whatever the values of the functions in pieces that stand in them."""
-        laws = [x for x in order((*nodes, *beside)) if is_choice(x)]
+        laws = PiecewiseNodes.all_of((*nodes, *beside))
         graph, number = self.system.scope.graph, fifty_digits().number
         any_value = {law: graph.symbol(f"(law {k})") for k, law in enumerate(laws)}
         rng = Random(1)

@@ -94,9 +94,6 @@ from eomgen.symbolic.numeric.pieces import Switch as Switch
 # True if a formula consists of several pieces
 from eomgen.symbolic.numeric.pieces import has_pieces as has_pieces
 
-# True if the node itself has one of several forms
-from eomgen.symbolic.numeric.pieces import is_choice as is_choice
-
 # Every switch in the scalars that something that moves can throw
 from eomgen.symbolic.numeric.pieces import switches_of as switches_of
 from eomgen.symbolic.numeric.roots import JUMPS as JUMPS

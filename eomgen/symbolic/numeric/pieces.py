@@ -50,11 +50,6 @@ def has_pieces(x: Scalar, of: Sequence[Node] | None = None) -> bool:
     return any(node.op in PIECEWISE and depends_on(node, of) for node in order((x,)))
 
 
-def is_choice(node: Node) -> bool:
-    """True if the node itself has one of several forms, by what stands in it."""
-    return node.op in PIECEWISE or node.op == "select"
-
-
 Choices = tuple[int, ...]
 """Of each node that has pieces: the sign of its argument, or of the difference of both; of samples the place."""
 
@@ -122,6 +117,11 @@ class PiecewiseNodes:
         nodes = order(filter(has_pieces, scalars))
         active = _active(nodes, moving)
         return PiecewiseNodes(tuple(x for x in nodes if (x.op in PIECEWISE or _base(x) is not None) and x in active))
+
+    @staticmethod
+    def all_of(scalars: Iterable[Scalar]) -> tuple[Node, ...]:
+        """Every node of some scalars that has one of several forms, or is one of two cases."""
+        return tuple(x for x in order(scalars) if x.op in PIECEWISE or x.op == "select")
 
     def choices_at(self, state: State) -> Choices | None:
         """The choice of each node at a state; None where it lies between two pieces of one.
