@@ -19,14 +19,12 @@ import numpy as np
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import Reactions
-from eomgen.mechanics.kinematics import ContactMode
 from eomgen.simulation.columns import OutputColumns
 from eomgen.simulation.contacts import EventFunction
 from eomgen.simulation.integration import drift_of
 from eomgen.simulation.integrator import Run, measured
 from eomgen.simulation.phase_change import PhaseStart
-from eomgen.simulation.phase_model import PhaseModel, Values, smallest_speed
+from eomgen.simulation.phase_model import PhaseModel, Values
 from eomgen.simulation.phase_models import PhaseModels
 from eomgen.simulation.reaction_columns import ReactionColumns, begun
 from eomgen.simulation.result import Impact, Kept, OnDemand, Phase, Trajectory
@@ -252,34 +250,10 @@ def _with_reactions(full: Trajectory, runs: Sequence[PhaseRun]) -> Trajectory:
 
 def _of_phase(s: PhaseRun, columns: ReactionColumns) -> Iterator[tuple[str, np.ndarray]]:
     """(name, column) of every reaction in a phase."""
-    model, t, shared = s.phase, s.run.t, _shared(s)
+    model, t = s.phase, s.run.t
     x = begun(t, model.functions.inner(s.run.x), model.functions.rhs.at(model.p), model.slowest)
     found = columns.along(t, x, model.parameters_along(t, s.run.x))
-    found[:, [name in shared for name in columns.names]] = np.nan
     return zip(columns.names, found.T, strict=True)
-
-
-def _shared(s: PhaseRun) -> frozenset[str]:
-    """Reactions that are open in a phase: of joints with friction that rest, as against their stops.
-
-    A joint may have a sense all the same: then a run goes on with one of all the forces that hold it (see `settled`).
-    """
-    phase, modes = s.phase, s.phase.configuration.modes
-    rough = [c for c in phase.contacts if c.size is not None and modes[c.name].sense]
-    if not rough or all(not modes[c.name].closed or c in rough for c in phase.contacts):
-        return frozenset()
-    system = phase.system
-    along = phase.functions.evaluated(s.run.t, s.run.x, tuple(system.sliding_velocity(c) for c in rough))
-    still = np.max(np.abs(along), axis=0, initial=0.0) <= smallest_speed(s.end)
-    resting = {c.name: ContactMode(sense=0) for c, rests in zip(rough, still, strict=True) if rests}
-    if not resting:
-        return frozenset()
-    key = ("shared", *resting)
-    if key not in phase.known:
-        known = Reactions.of(System.of(system.scope.model, {**system.modes, **resting})).determinate()
-        phase.known[key] = frozenset(name for name in _reaction_columns(phase).names if name not in known)
-    found: frozenset[str] = phase.known[key]
-    return found
 
 
 def _reaction_columns(phase: PhaseModel) -> ReactionColumns:
