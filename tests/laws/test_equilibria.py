@@ -714,3 +714,23 @@ def test_a_place_where_the_stiffness_vanishes_is_judged_by_the_force_beside_it(g
     place = min(found_in(model).found, key=lambda each: abs(number(each, "x") - root * scale))
     assert number(place, "x") == pytest.approx(root * scale, rel=1e-6)
     assert place.stability.kind == ("stable" if order % 2 else "unstable")
+
+
+BUNGEE = """
+eomgen = 1
+space = "plane"
+parameters = { m = 75, k = 90, L = 18, g = 9.81 }
+coordinates = { y = { start = START } }
+points = { bridge = [0, 0] }
+bodies.jumper.shape = { kind = "particle", mass = "m" }
+bodies.jumper.joint = { kind = "prismatic", axis = [0, 1], displacement = "y" }
+forces.cord = { kind = "rope", path = ["bridge", "jumper.center"], stiffness = "k", length = "L", damping = 12 }
+forces.weight = { kind = "gravity", acceleration = [0, "-g"] }
+"""
+
+
+@pytest.mark.parametrize("start", ["-0.01", "-3", "-20"])
+def test_rest_is_found_in_another_piece_of_a_law_than_the_start(start):
+    """A cord that is slack at the start holds its weight at L + m g/k below, in the piece where it is taut."""
+    found = Study(System.of(eomgen.loads(BUNGEE.replace("START", start)))).equilibria.found
+    assert [x for place in found for x in place.numbers.values()] == pytest.approx([-(18 + 75 * 9.81 / 90)])

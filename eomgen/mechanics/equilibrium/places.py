@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property, partial
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -42,6 +44,7 @@ from eomgen.symbolic.numeric import (
     fifty_digits,
     isolated,
     rank,
+    switches_of,
     tolerances,
 )
 from eomgen.symbolic.print import text_size
@@ -60,6 +63,8 @@ MOST_PLACES = 24  # that many guesses lead to
 MOST_OF_LONG = 4  # of these where the equations are long
 LONG = 500  # operations
 MOST_OF_FAMILIES = 400  # where many of them are one family: bodies that turn freely
+SIDE = 0.1  # of a guess, by which a place without slopes is left
+MOST_PIECES = 120  # places in other pieces
 UNDECIDED = 60  # boxes that may hold a root, from which one is sought
 ANYWHERE = "anywhere"
 CLUSTER = 3.0  # times as far from a root as those that belong to it so far, a box that may hold it does too
@@ -123,14 +128,15 @@ class _Search:
     def _from_guesses(self) -> Places:
         few = MOST_PLACES if len(order(self.statics.equations)) < LONG else MOST_OF_LONG
         most = few if not self.statics.norms else MOST_OF_FAMILIES
-        found = self._descent.roots_near(self._with_multipliers(self._scattered()), most)
+        guesses = np.concatenate([self._scattered(), self._in_other_pieces()])
+        found = self._descent.roots_near(self._with_multipliers(guesses), most)
         found = [z for z in found if self._is_held(z)]
         return self._sorted(found, complete=False, where="from many guesses")
 
     def one(self) -> np.ndarray | None:
         """The place that is reached from the guess, else the nearest of those reached from places about it."""
         measured = self._measured
-        for guesses in (measured.guess[None, :], measured._scattered()):
+        for guesses in (measured.guess[None, :], measured._scattered(), measured._in_other_pieces()):
             found = measured._descent.roots_near(measured._with_multipliers(guesses), 1)
             if found:
                 return np.asarray(found[0] * self._units)
@@ -272,6 +278,19 @@ class _Search:
         quarters = np.where([q in self._angles for q in self.statics.q], math.pi / 2, 0.0)
         round_ones = quarters * rng.integers(-1, 3, (32, n))
         return np.concatenate([self.guess[None, :], round_ones, about])
+
+    def _in_other_pieces(self) -> np.ndarray:
+        """Places near the guess in every piece of the laws: where ropes are taut, where springs touch."""
+        places, number = self.statics.q, fifty_digits().number
+        found: list[list[float]] = []
+        for switch in switches_of(self.statics.equations, frozenset(places)):
+            for aside in (0.0, SIDE, -SIDE):  # where a rope has no length its law has no slope
+                about = self.guess + aside * (1 + abs(self.guess))
+                state = {**self.values, **{q: number(Fraction(float(x))) for q, x in zip(places, about, strict=True)}}
+                with suppress(NoValue, ZeroDivisionError):
+                    moved = (switch.moved(state, x, frozenset(places)) for x in chain(*switch.targets(state)))
+                    found += [[float(each[q]) for q in places] for each in moved if each is not None]
+        return np.array(found[:MOST_PIECES]).reshape(-1, len(places))
 
     def _with_multipliers(self, q: np.ndarray) -> np.ndarray:
         """Places with the multipliers that balance them best."""
