@@ -11,7 +11,7 @@ from each import each
 from moving import at, equal, state_of, written
 
 import eomgen
-from eomgen.errors import NotYet
+from eomgen.errors import ModelError, NotYet
 from eomgen.mechanics.dynamics import formulations as projection
 from eomgen.mechanics.dynamics import formulations as recursive
 from eomgen.mechanics.dynamics.system import (
@@ -712,3 +712,25 @@ def test_a_force_that_needs_accelerations_is_refused_by_name():
     """A force may hold rates and time, not accelerations."""
     with pytest.raises(eomgen.EomgenError, match="an acceleration"):
         system_with("couple", PLANE, 'body = "lower", couple = "a\'\'"')
+
+
+FLOOR = """
+eomgen = 1
+space = "plane"
+parameters = { m = 2, g = 9.81, k = 1e4 }
+coordinates = { y = { start = -0.001 } }
+points = { G = [3, 0] }
+bodies.ball.shape = { kind = "particle", mass = "m" }
+bodies.ball.joint = { kind = "prismatic", axis = [0, 1], displacement = "y" }
+forces.floor = { kind = "bumper", points = ["G", "ball.center"], along = [0, 1], stiffness = "k", length = 0 }
+forces.weight = { kind = "gravity", acceleration = [0, "-g"] }
+outputs = { P = "-pull(floor)", a = "y''" }
+"""
+
+
+def test_a_bumper_along_a_direction_may_be_a_floor_of_length_0():
+    """m y'' = k max(0, -y) - m g; between points, whose distance is never below 0, it would not touch."""
+    found = eomgen.solve(eomgen.loads(FLOOR))
+    assert found["P"].value == pytest.approx(10) and found["a"].value == pytest.approx(10 / 2 - 9.81)
+    with pytest.raises(ModelError, match="the bumper 'floor' of length 0 never touches"):
+        eomgen.loads(FLOOR.replace("along = [0, 1], ", ""))

@@ -10,7 +10,7 @@ from eomgen.model.fields import FormulaRule
 from eomgen.model.forces.base import Element
 from eomgen.model.forces.elements import Reach, Straight
 from eomgen.model.forces.load import LoadContext
-from eomgen.model.kinds import RESISTS, TAKES, Direction, Length, LinearDamping
+from eomgen.model.kinds import RESISTS, TAKES, Direction, LinearDamping, Radius
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression import Expression, Scalar, function, over
 
@@ -29,7 +29,7 @@ class Bumper(Straight):
     Args:
         points: its two ends.
         stiffness: k [N/m; with an exponent n N/m^n].
-        length: without compression: the distance of its points at which they touch [m].
+        length: without compression: the distance of its points at which they touch, along a direction 0, too [m].
         damping: d [N s/m].
         exponent: n (None: 1).
         dissipation: a, in place of the damping [s/m].
@@ -38,14 +38,17 @@ class Bumper(Straight):
 
     kind: ClassVar[str] = "bumper"
     stiffness: Hardness
-    length: Length
+    length: Radius
     damping: LinearDamping | None = None
     exponent: Exponent | None = None
     dissipation: Dissipation | None = None
     along: Direction | None = None
 
     def diagnostics(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
-        """Diagnostics of a damping beside a dissipation."""
+        """Diagnostics of a damping beside a dissipation, and of points that would have to pass through one another."""
+        if self.along is None and self.length is not None and self.length.literal == 0:
+            what = f"the bumper '{path[1]}' of length 0 never touches: a distance is not below 0"
+            yield Diagnostic((*path, "length"), what, "give `along`, or a length")
         if self.damping is not None and self.dissipation is not None:
             what = f"the bumper '{path[1]}' has a damping and a dissipation"
             yield Diagnostic((*path, "dissipation"), what, "leave one of them out", key=True)
