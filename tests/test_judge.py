@@ -1155,3 +1155,23 @@ def test_the_command_judges_a_point_without_mass_by_its_balance_as_python_does(t
     told = CliRunner().invoke(main, ["verify", str(tmp_path / "series.toml"), equation, "--no-certify"])
     verdict = eomgen.verify(eomgen.loads(SERIES), equation).verdict
     assert (told.exit_code, verdict) == (code, "wrong" if code else "right"), told.output
+
+
+BRAKED = """
+eomgen = 1
+space = "plane"
+parameters = { J = 2, N = 30 }
+coordinates = { a = { start = 0, speed = 4 } }
+inputs = { M = 3 }
+bodies.wheel = { mass = 0, inertia = "J", joint = { kind = "revolute", angle = "a" } }
+forces.brake = { kind = "brake", body = "wheel", torque = "M" }
+"""
+
+
+def test_no_cause_says_that_a_term_stands_there_as_itself():
+    """J a'' = -sign(a') max(0, M): -M alone is wrong by the force of the brake, not by the inertia of the wheel."""
+    found = eomgen.verify(eomgen.loads(BRAKED), "J*a'' = -M")
+    assert found.verdict == "wrong" and found.causes
+    for text in (cause.text for cause in found.causes if "stands there as" in cause.text):
+        what, _, stands = text.partition(" stands there as ")
+        assert not what.rstrip(",").endswith(stands)

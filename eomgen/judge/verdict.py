@@ -285,6 +285,9 @@ def causes_of(case: Case, found: Sequence[Explanation], *, moving: bool, rooted:
         moving: it is about accelerations: products of two speeds are Coriolis terms.
         rooted: what is compared is the square of what was requested.
     """
+    found = [each for each in found if not _replaces_by_itself(case, each)]
+    if not found:
+        return ()
     best = found[0]
     causes = _joined(case, best, [cause_of(case, share, best.row, moving=moving) for share in best.shares])
     others = [e for e in found[1:] if len(e.shares) == len(best.shares)]
@@ -308,11 +311,10 @@ def _is_another(one: Cause, other: Cause) -> bool:
 
 def _joined(case: Case, found: Explanation, causes: list[Cause]) -> list[Cause]:
     """The causes; what is missing and what stands there in its place as one."""
-    gone = [k for k, share in enumerate(found.shares) if share.mistake.open and share.factor == 0 and not share.unit]
-    extra = [k for k, share in enumerate(found.shares) if share.mistake.kind == "extra_term"]
-    if len(gone) != 1 or len(extra) != 1:
+    swapped = _swapped(found)
+    if swapped is None:
         return causes
-    (k,), (j,) = gone, extra
+    k, j = swapped
     rows = found.shares[k].mistake.rows
     ratio = (
         over(found.shares[j].mistake.rows[0], rows[max(found.row, 0)]) if not is_zero(rows[max(found.row, 0)]) else 0
@@ -324,10 +326,33 @@ def _joined(case: Case, found: Explanation, causes: list[Cause]) -> list[Cause]:
     )
     name, term = causes[k].quantity, causes[k].term
     what = f"{name}, {term}," if term and term not in name else name
-    stands = found.shares[j].mistake.rows[0] * (-1 if found.scale == "opposite" else 1)
+    stands = _standing(found, j)
     text = f"{what} stands there as {short_text(stands, case.system.scope.positive)}"
     joined = replace(causes[k], kind="factor" if constant else "wrong_quantity", text=text)
     return [joined if i == k else cause for i, cause in enumerate(causes) if i != j]
+
+
+def _swapped(found: Explanation) -> tuple[int, int] | None:
+    """(the share that is missing, the one that stands there in its place); None where there is no such pair."""
+    gone = [k for k, share in enumerate(found.shares) if share.mistake.open and share.factor == 0 and not share.unit]
+    extra = [k for k, share in enumerate(found.shares) if share.mistake.kind == "extra_term"]
+    return (gone[0], extra[0]) if len(gone) == len(extra) == 1 else None
+
+
+def _standing(found: Explanation, j: int) -> Scalar:
+    """What stands in the equation by an extra term."""
+    return found.shares[j].mistake.rows[0] * (-1 if found.scale == "opposite" else 1)
+
+
+def _replaces_by_itself(case: Case, found: Explanation) -> bool:
+    """True if what is missing and what stands in its place would read the same: that explains nothing."""
+    swapped = _swapped(found)
+    if swapped is None:
+        return False
+    k, j = swapped
+    positive = case.system.scope.positive
+    gone = found.shares[k].mistake.rows[max(found.row, 0)]
+    return short_text(gone, positive) == short_text(_standing(found, j), positive) != ""
 
 
 def cause_of(case: Case, share: Share, row: int, *, reported: bool = True, moving: bool = True) -> Cause:
