@@ -1159,19 +1159,37 @@ def test_the_command_judges_a_point_without_mass_by_its_balance_as_python_does(t
 
 BRAKED = """
 eomgen = 1
-space = "plane"
-parameters = { J = 2, N = 30 }
-coordinates = { a = { start = 0, speed = 4 } }
-inputs = { M = 3 }
-bodies.wheel = { mass = 0, inertia = "J", joint = { kind = "revolute", angle = "a" } }
-forces.brake = { kind = "brake", body = "wheel", torque = "M" }
+space = "space"
+parameters = { m = 350, J = 1.1, r = 0.3, N = 3500 }
+coordinates = { x = { start = 0, speed = 25 }, a = { start = 0, speed = 80 } }
+[states]
+M = { start = 0, rate = "(1500 - M)/0.03", unit = "N*m" }
+[bodies]
+car = { mass = "m", joint = { kind = "prismatic", axis = [1, 0, 0], displacement = "x" } }
+wheel.mass = 15
+wheel.inertia = ["J", "J", "J"]
+wheel.joint = { kind = "revolute", on = "car", axis = [0, 1, 0], angle = "a" }
+[forces.brake]
+kind = "brake"
+body = "wheel"
+torque = "M"
+[forces.road]
+kind = "tyre"
+point = "wheel.center"
+radius = "r"
+longitudinal = { B = 10, C = 1.6, D = "N", E = 0.5, relaxation = 0.15 }
 """
 
 
+@pytest.mark.slow
 def test_no_cause_says_that_a_term_stands_there_as_itself():
-    """J a'' = -sign(a') max(0, M): -M alone is wrong by the force of the brake, not by the inertia of the wheel."""
-    found = eomgen.verify(eomgen.loads(BRAKED), "J*a'' = -M")
-    assert found.verdict == "wrong" and found.causes
-    for text in (cause.text for cause in found.causes if "stands there as" in cause.text):
-        what, _, stands = text.partition(" stands there as ")
-        assert not what.rstrip(",").endswith(stands)
+    """J a'' = -r F - sign(a') max(0, M): -M alone is wrong by the brake, not by the inertia of the wheel.
+
+    7 s: pairs of mistakes are tried on the equations of a tyre.
+    """
+    model = eomgen.loads(BRAKED)
+    found = eomgen.verify(
+        model, "J*a'' = -r*N*sin(1.6*atan(10*road_kappa - 0.5*(10*road_kappa - atan(10*road_kappa)))) - M"
+    )
+    assert found.verdict == "wrong" and "the force brake" in found.causes[0].text
+    assert "stands there as J*a''" not in " ".join(cause.text for cause in found.causes)

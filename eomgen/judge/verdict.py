@@ -340,7 +340,7 @@ def _swapped(found: Explanation) -> tuple[int, int] | None:
 
 
 def _standing(found: Explanation, j: int) -> Scalar:
-    """What stands in the equation by an extra term."""
+    """The term that stands in the equation beside what belongs there."""
     return found.shares[j].mistake.rows[0] * (-1 if found.scale == "opposite" else 1)
 
 
