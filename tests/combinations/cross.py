@@ -13,6 +13,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
+import impacts
 import laws
 import numpy as np
 from compare import Found, Product, quiet
@@ -129,6 +130,41 @@ def _run(found: Found, model: Any, product: Product, oracle: Oracle, s: State, s
             energy.append((float(columns["energy"][i]), T + V))
     for got, want_E in energy[1:]:
         found.same("run", "energy against the start's", got - energy[0][0], want_E - energy[0][1], 1 + abs(want_E))
+
+
+def _impacts(found: Found, model: Any, product: Product, oracle: Oracle, s: State, solved: Solved) -> None:
+    """Impacts of a run at a contact with friction: by Routh's graph; in the cone; no energy gained but by Newton."""
+    law = (oracle.model.impact or {}).get("law", "poisson")
+    rough = [x for x, c in oracle.model.constraints.items() if "restitution" in c and "friction" in c]
+    if not rough or oracle.model.impact is None:
+        return
+    run, n = eomgen.simulate(model, time=0.6, samples=4), len(oracle.names)
+    begun = {phase.start: phase for phase in run.phases}
+    for impact in run.impacts:
+        if impact.contact not in rough:
+            continue
+        name, at = impact.contact, f"at t = {impact.t:.3g}"
+        ended = next(phase for phase in run.phases if phase.end == impact.t)
+        states = []
+        for edge in (ended.last, begun[impact.t].first):
+            x = np.array([edge[x] for x in run.moving])
+            states.append(oracle.of_all_rates(impact.t, x[:n], run.speeds, x[n:]))
+        one, two = states
+        along = [x for key, x in impact.impulses.items() if key.startswith(f"{name} t")]
+        p_n, mu = impact.impulses[name], oracle.model.number(oracle.model.constraints[name]["friction"])
+        if p_n < 0 or np.linalg.norm(along) > mu * p_n * (1 + 1e-9) or (law != "newton" and impact.loss < -1e-9):
+            found.faults.append(("impact", f"{impact} is outside its cone, or gains energy"))
+        T = [oracle.energy(each)[0] for each in states]
+        found.same("impact", f"loss {at}", impact.loss, T[0] - T[1], 1 + abs(T[0]), 1e-6)
+        if begun[impact.t].model.configuration.modes[name].closed:
+            found.skipped.append(f"impact {at}: it rests")
+            continue
+        want, p = impacts.after(oracle, one, name, law)
+        size = float(np.max(np.abs(one.v))) + 1e-3
+        for q, a, b in zip(oracle.names, two.v, want.v, strict=True):
+            found.same("impact", f"{q}' after {at}", a, b, size, 1e-5)
+        found.same("impact", f"{name} {at}", p_n, p[0], p[0], 1e-5)
+        found.same("impact", f"friction of {name} {at}", np.linalg.norm(along), np.linalg.norm(p[1:]), p[0], 1e-5)
 
 
 def _beyond(oracle: Oracle, s: State, solved: Solved, columns: Any, i: int) -> bool:
@@ -265,6 +301,7 @@ PARTS = {
     "answers": _answers,
     "reactions": _reactions,
     "run": _run,
+    "impacts": _impacts,
     "small motions": _small,
     "inverse": _inverse,
     "as a part": _as_part,

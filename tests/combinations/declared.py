@@ -210,6 +210,7 @@ class Declared:
         self.points = d.get("points", {})
         self.bodies = {name: {**body, "name": name} for name, body in d.get("bodies", {}).items()}
         self.constraints = d.get("constraints", {})
+        self.impact = d.get("impact")
         self.outputs = d.get("outputs", {})
         self.mass = {name: self._properties(body) for name, body in self.bodies.items()}
         own = {name: f"{body.get('mass', '')} {body.get('inertia', '')}" for name, body in self.bodies.items()}

@@ -21,7 +21,7 @@ def toml(model: dict[str, Any]) -> str:
     head = [f"{key} = {_inline(x)}" for key, x in model.items() if not isinstance(x, dict)]
     parts = []
     for key, table in model.items():
-        if not isinstance(table, dict) or not table:
+        if not isinstance(table, dict) or (not table and key != "impact"):
             continue
         if key in ("bodies", "constraints", "forces"):
             for name, entry in table.items():
@@ -100,6 +100,8 @@ class Drawing:
         self.states: dict[str, Any] = {}
         self.outputs: dict[str, Any] = {}
         self.host: str | None = None
+        self.impact: dict[str, str] | None = None
+        self.side = Random(f"rough{sorted(levels.items())}")  # draws of its own: what else is drawn stays as it was
 
     # pieces of text
 
@@ -676,6 +678,10 @@ class Drawing:
             scale = 100.0 if isinstance(old, dict) and old.get("unit") == "cm" else 1.0
             self.coordinates["p1"] = {**old, "speed": round(4.4 * scale, 6)}
             return
+        if how == "bouncing" and self._is_rough:
+            del self.coordinates["p1"]
+            self.rough_contact()
+            return
         y = self.coordinate("p2", "length", 0.06 if how in ("open", "bouncing") else 0.0)
         place: list = [x, y]
         normal: list = [0, 1]
@@ -702,6 +708,40 @@ class Drawing:
             if self.levels["units"] != "none":
                 constraint["friction"] = {"viscous": {"value": 0.3, "unit": "s/m"}}
         self.constraints["floor"] = constraint
+
+    @property
+    def _is_rough(self) -> bool:
+        """Whether what rebounds rubs too: not where friction is refused, of the rest two of three."""
+        acting = {self.levels["force"], self.levels["second_force"]}
+        if acting & {"potential", "kinetic", "generalized"} or self.levels["tie"] in ("gap", "rate"):
+            return False
+        return self.side.random() < 2 / 3
+
+    def rough_contact(self) -> None:
+        """A corner that rebounds with friction: of a point, a body in flight, an arm on a carrier that slides."""
+        how = self.side.choice(("point", "tumbling", "arm"))
+        if how == "arm" and self.plane:
+            x = self.coordinate("p1", "length", 0.0, 0.4)
+            angle = self.coordinate("p2", "angle", self.side.choice((-0.9, -2.0)))
+            self.particle("carrier", {"kind": "prismatic", "at": [0, 0.55], "axis": [1, 0], "displacement": x})
+            self.box("puck", self.joint("revolute", on="carrier.center", angle=angle), corner=[0.6, 0])
+        elif how == "point":
+            x, y = self.coordinate("p1", "length", 0.0, 0.2), self.coordinate("p2", "length", 0.06)
+            place = [x, y] if self.plane else [x, self.coordinate("p3", "length", 0.0, 0.3), y]
+            self.particle("puck", {"kind": "placed", "at": place, "angle": 0})
+        else:
+            self.floating("puck", 0.0, 0.22, 0.5, corner=self.v(-0.15, -0.1, -0.1))
+        self.constraints["floor"] = {
+            "kind": "support",
+            "point": "puck.center" if how == "point" else "puck.corner",
+            "at": self.v(0, 0, 0),
+            "normal": [0, 1] if self.plane else [0, 0, 1],
+            "unilateral": True,
+            "restitution": self.side.choice((0.5, 0.5, 0.2)),
+            "friction": self.side.choice(("mu", "2*mu")),
+        }
+        law = self.side.choice(("poisson", "poisson", "energetic", "newton", None))
+        self.impact = {} if law is None else {"law": law}
 
     # forces
 
@@ -1141,7 +1181,9 @@ class Drawing:
             "forces": self.forces,
             "outputs": self.outputs,
         }
-        head = {"eomgen": 1, "name": "drawn", "space": self.levels["space"]}
+        head: dict[str, Any] = {"eomgen": 1, "name": "drawn", "space": self.levels["space"]}
+        if self.impact is not None:
+            body["impact"] = self.impact
         return {**head, "parameters": self.parameters(toml(body)), **body}
 
     def all_driven(self) -> None:

@@ -1225,12 +1225,17 @@ def sticking(o: Any, now: Any, rows: list) -> list[tuple[str, bool, Any]]:
             constraint["kind"] == "rolling" and not constraint.get("slip")
         ):
             continue
-        place, body, on, tangents = _sliding(now, constraint)
-        v = now.velocity_at(body, place) - now.velocity_at(on, place)
-        slips = [dot(e, v) for e in tangents]
-        if max(abs(float(x.c[0][0])) for x in slips) < 1e-9:
-            found += [(name, x, role) for x, role in zip(slips, "ts", strict=False)]
+        along = slips(now, constraint)
+        if max(abs(float(x.c[0][0])) for x in along) < 1e-9:
+            found += [(name, x, role) for x, role in zip(along, "ts", strict=False)]
     return found
+
+
+def slips(now: Any, constraint: dict) -> list[Jet]:
+    """The sliding velocities of a contact along its tangents."""
+    place, body, on, tangents = _sliding(now, constraint)
+    v = now.velocity_at(body, place) - now.velocity_at(on, place)
+    return [dot(e, v) for e in tangents]
 
 
 def rubbing(o: Any, now: Any, constraint: dict) -> np.ndarray:
@@ -1480,6 +1485,7 @@ def holds(o: Any, solved: Any) -> bool:
 
 
 STICKING: dict[str, Callable] = {"least": lambda mu, N: mu * N * (1 + 1e-9)}
+IMPACTS: dict[str, Callable] = {"cone": lambda mu: mu}  # the impulse of friction over the normal one, at most
 
 
 def _of_constraint(name: str, constraint: dict, now: Any, rows: list[tuple[str, Any]]) -> dict[str, Any]:

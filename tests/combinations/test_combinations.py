@@ -105,6 +105,8 @@ def of_law(table: str, law: str) -> compare.Product:
         return product(force="spring_moved", joint="prismatic")
     if table == "STICKING":
         return product(contact="sticking")
+    if table == "IMPACTS":
+        return product(contact="bouncing", output="equilibrium")
     if table == "FRICTION":
         return product(contact={"coulomb": "sliding", "viscous": "viscous"}[law])
     if law == "added_mass":
@@ -156,6 +158,7 @@ LAWS = [
     *(("FRICTION", law) for law in laws.FRICTION),
     ("MOVING", "point"),
     ("STICKING", "least"),
+    ("IMPACTS", "cone"),
     *(("STATES", law) for law in laws.STATES),
 ]
 
@@ -165,9 +168,8 @@ LAWS = [
 def test_an_error_in_each_law_of_the_oracle_is_noticed(monkeypatch, table, law):
     """Product and oracle agree; with the law wrong they do not."""
     known = of_law(table, law)
-    held = (
-        (lambda: cross.across(known, parts=STICKS)) if table == "STICKING" else lambda: compare.against(known, seed=1)
-    )
+    parts = {"STICKING": STICKS, "IMPACTS": ("impacts",)}.get(table)
+    held = (lambda: cross.across(known, parts=parts)) if parts else lambda: compare.against(known, seed=1)
     right = held()
     assert right.numbers > 0
     assert not right.faults
