@@ -725,6 +725,7 @@ class Drawing:
             angle = self.coordinate("p2", "angle", self.side.choice((-0.9, -2.0)))
             self.particle("carrier", {"kind": "prismatic", "at": [0, 0.55], "axis": [1, 0], "displacement": x})
             self.box("puck", self.joint("revolute", on="carrier.center", angle=angle), corner=[0.6, 0])
+            self.bodies["puck"]["center"] = [0.3, 0.05]
         elif how == "point":
             x, y = self.coordinate("p1", "length", 0.0, 0.2), self.coordinate("p2", "length", 0.06)
             place = [x, y] if self.plane else [x, self.coordinate("p3", "length", 0.0, 0.3), y]
