@@ -860,6 +860,7 @@ def test_a_moment_of_inertia_is_explained_body_by_body(equation, words):
         ("elastic_pendulum", "m*r'' - m*r*theta'^2 = m*g*cos(theta) - k*r", "motion", "l0, is left out"),
         ("double_pendulum", "omega(arm1) = theta1' + theta2'", "velocity", "theta1 + theta2 for theta1"),
         ("simple_pendulum", "l*theta'' + g*cos(theta) = 0", "motion", "is counted from the other axis"),
+        ("simple_pendulum", "l*theta'^2 = 2*g*(sin(theta) - sin(1))", "law", "is counted from the other axis"),
     ],
 )
 def test_a_change_of_the_model_file_is_one_with_which_the_equation_is_right(model, equation, kind, words):

@@ -90,6 +90,13 @@ class Case:
         numbers = self.phase.start_of(at_rest=self.at_rest).numbers
         return vanish_at(scalars, {**self.system.scope.known_parameters, **numbers})
 
+    def begins_otherwise(self, scalar: Scalar) -> bool:
+        """True if a scalar of positions and speeds is not 0 at the start in numbers, which are sooner there."""
+        with suppress(DerivationError, MissingValues, ModelError):
+            numbers = self.phase.start_of(at_rest=self.at_rest).numbers
+            return vanish_at((scalar,), {**self.system.scope.known_parameters, **numbers}) is False
+        return False
+
     def put_into_rate(
         self, name: str, x: Scalar, values: Mapping[Node, Scalar]
     ) -> tuple[dict[Node, Scalar], Scalar, Scalar, bool]:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from contextlib import suppress
 from dataclasses import field, replace
 from functools import cached_property
-from itertools import permutations
+from itertools import islice, permutations
 
 import numpy as np
 
@@ -365,11 +365,13 @@ def linearized(rows: ScalarRow, place: Mapping[Node, Scalar]) -> ScalarRow:
         DerivationError: one has no value there.
     """
     moving = tuple(place)
-    found = []
-    for row in rows:
-        still, *slopes = substituted((row, *gradient(row, moving)), place)
-        found.append(sum((s * (x - place[x]) for s, x in zip(slopes, moving, strict=True)), start=still))
-    return tuple(found)
+    slopes = [gradient(row, moving) for row in rows]
+    flat = substituted((*rows, *(slope for row in slopes for slope in row)), place)
+    n, steps = len(moving), [x - place[x] for x in moving]
+    return tuple(
+        sum((s * dx for s, dx in zip(flat[k : k + n], steps, strict=True)), start=still)
+        for still, k in zip(flat[: len(rows)], range(len(rows), len(flat), n), strict=True)
+    )
 
 
 def place_of(case: Case, about: str | None) -> Mapping[Node, Scalar] | None:
@@ -470,9 +472,16 @@ def _has_a_corner(rows: ScalarRow, moving: tuple[Node, ...], place: Mapping[Node
 
 
 def _linearized(known: Iterable[Mistake], place: Mapping[Node, Scalar]) -> Iterator[Mistake]:
+    known = tuple(known)
+    try:  # what they share is looked at once
+        flat = iter(linearized(tuple(x for each in known for x in each.rows), place))
+    except DerivationError:  # one of them has no value there
+        flat = None
     for each in known:
         with suppress(DerivationError):
-            yield replace(each, rows=linearized(each.rows, place))
+            yield replace(
+                each, rows=linearized(each.rows, place) if flat is None else tuple(islice(flat, len(each.rows)))
+            )
 
 
 def excess(case: Case, scalar: Scalar) -> str:

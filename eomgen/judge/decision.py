@@ -8,6 +8,7 @@ What vanishes with 50 digits is looked at once more in balls: a kinetic energy o
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
@@ -30,6 +31,7 @@ from eomgen.symbolic.expression import (
     symbols_of,
 )
 from eomgen.symbolic.numeric import (
+    ARRAYS,
     FLOAT,
     NoValue,
     evaluate,
@@ -39,6 +41,7 @@ from eomgen.symbolic.numeric import (
 
 REAL_STATES = 6  # where roots and sizes may hold on one side only: signs are shared out among so many
 TRIES = 40
+FEW_FAILED = 3  # after which those that fail are told beforehand
 STEPS = 30  # of Newton's method to the constraints
 NumberRow = list[Any]
 
@@ -224,23 +227,37 @@ def states_of(
         flat: whose other symbols get values too.
         on_ties: coordinates and speeds are such that the constraints hold.
     """
+    if not on_constraints:
+        yield from _drawn(system, flat, seed)
+        return
+    gaps, failed, hopeful = _gaps(system, flat), 0, [True] * TRIES
+    key = (states_of, seed, system.symbols.t in symbols_of(flat), tuple(_others_in(system, flat)))
+    for attempt, state in enumerate(_drawn(system, flat, seed, near=True)):
+        if not hopeful[attempt]:
+            continue
+        if (*key, attempt) not in system.found:  # the key is all that the state depends on
+            system.found[*key, attempt] = _constrained(system, state, gaps)
+        if (closed := system.found[*key, attempt]) is not None:
+            yield closed
+        elif (failed := failed + 1) == FEW_FAILED:
+            hopeful = _closing(system, [*_drawn(system, flat, seed, near=True)], gaps)
+
+
+def _drawn(system: System, flat: Sequence[Scalar], seed: int, *, near: bool = False) -> Iterator[dict[Node, Any]]:
+    """The states before they are moved onto the constraints; near the start for these."""
     rng, symbols, arithmetic = Random(seed), system.symbols, fifty_digits()
-    own = {symbols.parameters[name]: float(x) for name, x in system.scope.model.exact_parameters().items()}
-    known = _start(system, own)
-    others = tuple(x for x in symbols_of(flat) if x not in known)
-    gaps, timed = _gaps(system, flat), symbols.t in symbols_of(flat)
+    own = _own_values(system)
+    known, others = _start(system, own), _others_in(system, flat)
     for attempt in range(TRIES):
-        spread = 0.1 if on_constraints and attempt < TRIES // 2 else 0.6
+        spread = 0.1 if near and attempt < TRIES // 2 else 0.6
         state: dict[Node, Any] = {}
         for x in symbols.parameters.values():
             size = own.get(x, 1.0) or 1.0
             sign = 1 if x in system.scope.positive or own.get(x, 1.0) > 0 else -1
             state[x] = sign * abs(size) * rng.uniform(1 - spread, 1 + spread)
         for q in symbols.q:
-            near = known.get(q, 0.0)
-            state[q] = (
-                near + rng.uniform(-0.2, 0.2) * (1 + abs(near)) if on_constraints else _either(rng, near, attempt)
-            )
+            start = known.get(q, 0.0)
+            state[q] = start + rng.uniform(-0.2, 0.2) * (1 + abs(start)) if near else _either(rng, start, attempt)
         moving = (*symbols.u, *symbols.a, *symbols.lam, *symbols.inputs.values(), *symbols.unknowns.values())
         for k, x in enumerate(moving):
             state[x] = rng.uniform(0.3, 2) * _sign(k, attempt)
@@ -253,14 +270,39 @@ def states_of(
         for four in system.scope.quaternions:
             length = arithmetic.functions["sqrt"](sum(exact[e] ** 2 for e in four))
             exact |= {e: exact[e] / length for e in four}
-        if on_constraints:
-            key = (states_of, seed, attempt, timed, others)  # all that the state depends on
-            if key not in system.found:
-                system.found[key] = _constrained(system, exact, gaps)
-            if system.found[key] is None:
-                continue
-            exact = system.found[key]
         yield exact
+
+
+def _own_values(system: System) -> dict[Node, float]:
+    """The values of the parameters of the file."""
+    symbols = system.symbols.parameters
+    return {symbols[name]: float(x) for name, x in system.scope.model.exact_parameters().items()}
+
+
+def _others_in(system: System, flat: Sequence[Scalar]) -> list[Node]:
+    """The symbols in scalars that are no coordinates with a start."""
+    known = system.scope.start_values()
+    return [x for x in symbols_of(flat) if x not in known]
+
+
+def _closing(system: System, states: Sequence[Mapping[Node, Any]], gaps: Sequence[Scalar]) -> list[bool]:
+    """True for each state from which Newton's method in doubles closes the gaps: with 50 digits it is slow to fail."""
+    q, n = system.symbols.q, len(gaps)
+    flat = [*gaps, *(x for gap in gaps for x in gradient(gap, q))]
+    known = {x: np.array([float(state[x]) for state in states]) for x in states[0]}
+    closes = np.zeros(len(states), dtype=bool)
+    with np.errstate(all="ignore"):
+        for _ in range(STEPS):
+            values = np.array([np.broadcast_to(x, len(states)) for x in evaluate(flat, known, ARRAYS)], dtype=float)
+            left, slopes = values[:n].T, values[n:].T.reshape(-1, n, len(q))
+            closes |= np.all(np.abs(left) < tolerances.CARRIED, axis=1)
+            moves = ~closes & np.isfinite(values).all(axis=0)
+            if not moves.any():
+                break
+            step = np.zeros((len(states), len(q)))
+            step[moves] = np.einsum("sqn,sn->sq", np.linalg.pinv(slopes[moves]), left[moves])
+            known |= {x: known[x] - dx for x, dx in zip(q, step.T, strict=True)}
+    return [bool(x) for x in closes]
 
 
 def _sign(k: int, attempt: int) -> int:
@@ -345,14 +387,7 @@ def _at_constrained_speeds(system: System, state: dict[Node, Any]) -> dict[Node,
 
 def _least_step(rows: list[NumberRow], left: NumberRow) -> NumberRow | None:
     """The least step that takes away what is left: J^T (J J^T)^-1 left, of the rows that are independent."""
-    kept: list[int] = []
-    plain = np.array([[float(x) for x in row] for row in rows])
-    for k in range(len(rows)):
-        if (
-            np.linalg.matrix_rank(plain[[*kept, k]], tol=tolerances.COMPUTED * max(1.0, float(np.abs(plain).max())))
-            == len(kept) + 1
-        ):
-            kept.append(k)
+    kept = _independent(np.array([[float(x) for x in row] for row in rows]))
     if not kept:
         return None
     square = [[sum(a * b for a, b in zip(rows[i], rows[j], strict=True)) for j in kept] for i in kept]
@@ -360,6 +395,20 @@ def _least_step(rows: list[NumberRow], left: NumberRow) -> NumberRow | None:
     if solved is None:
         return None
     return [sum(rows[i][c] * y for i, y in zip(kept, solved, strict=True)) for c in range(len(rows[0]))]
+
+
+def _independent(plain: np.ndarray) -> list[int]:
+    """The rows that are no combination of those before them."""
+    least = tolerances.COMPUTED * max(1.0, float(np.abs(plain).max(initial=0)))
+    if len(plain) == 1:
+        return [0] if math.hypot(*plain[0].tolist()) > least else []
+    if np.linalg.matrix_rank(plain, tol=least) == len(plain):
+        return [*range(len(plain))]
+    kept: list[int] = []
+    for k in range(len(plain)):
+        if np.linalg.matrix_rank(plain[[*kept, k]], tol=least) == len(kept) + 1:
+            kept.append(k)
+    return kept
 
 
 def _solved(matrix: list[NumberRow], right: NumberRow) -> NumberRow | None:

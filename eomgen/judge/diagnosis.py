@@ -10,6 +10,7 @@ the cheapest that leaves nothing is proven exactly, and only then stated.
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import islice
@@ -35,6 +36,7 @@ ALIKE = 7  # digits to which directions are compared before pairs are sought
 MOST_PLAIN = 40  # contributions beside whose usual factors one more mistake is sought
 PAIRED, TRIPLED = 900, 120  # mistakes of which pairs and triples are sought
 MOST_MISTAKES = 3  # in one explanation
+DEAREST = {1: 30.0, 2: 33.0, 3: 40.5}  # the cost up to which so many mistakes are believed
 PROVEN = 24  # explanations that are proven before it is given up
 SQUARED = 3.0  # how much less it is believed that a square has the wrong sign
 WHOLE_MOTION = 0.2  # how much less a wrong factor of all that a motion does is believed than one of a force
@@ -245,7 +247,10 @@ class Search:
         if not np.isfinite(size) or size == 0:
             return []
         some = list(range(len(A))) if number == 1 else self._distinct
-        chosen = (self._single, self._pairs, self._triples)[number - 1](left, A[some])
+        if number == MOST_MISTAKES:
+            chosen = self._triples(left, A[some], [self.mistakes[kept[i]].rank for i in some])
+        else:
+            chosen = (self._single, self._pairs)[number - 1](left, A[some])
         found = [self._explained([kept[some[i]] for i in each]) for each in chosen]
         if number == 2:
             found += [self._explained([i, j], y) for i, j, y in self._beside_usual(left, A, kept)]
@@ -345,10 +350,12 @@ class Search:
         for i, j in found[np.argsort(found.sum(axis=1))][:room]:
             yield [int(i), int(j)]
 
-    def _triples(self, left: np.ndarray, A: np.ndarray) -> Iterator[list[int]]:
-        A = A[:TRIPLED]
+    def _triples(self, left: np.ndarray, A: np.ndarray, ranks: Sequence[float]) -> Iterator[list[int]]:
+        """Three mistakes whose cost is not too high together; the ranks increase."""
+        A, room = A[:TRIPLED], DEAREST[3] - 3 * PLAINEST
         for i in range(len(A)):
-            rest = A[i + 1 :] - np.outer(A[i + 1 :] @ A[i], A[i])
+            believed = bisect_right(ranks, room - sum(ranks[i : i + 2]), 0, len(A))
+            rest = A[i + 1 : believed] - np.outer(A[i + 1 : believed] @ A[i], A[i])
             lengths = np.linalg.norm(rest, axis=1)
             kept = np.flatnonzero(lengths > tolerances.CARRIED)
             if len(kept) < 2:
@@ -363,6 +370,8 @@ class Search:
         Args:
             first: y of the first one; None: it is sought.
         """
+        if sum(PLAINEST + self.mistakes[i].rank for i in chosen) > DEAREST[len(chosen)]:
+            return None  # a factor only makes it dearer
         C, scale = self.C[list(chosen)], self._size
         columns: list[np.ndarray] = [(c / scale[:, None]).ravel() for c in C]
         if self.D is not None:

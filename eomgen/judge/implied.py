@@ -28,6 +28,7 @@ from eomgen.judge.comparison import Comparison, excess
 from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.diagnosis import (
     BELIEVED,
+    DEAREST,
     FAR_FETCHED,
     MOST_MISTAKES,
     MOST_NEAR,
@@ -88,7 +89,6 @@ class PutIn:
 
 
 Instant = WrittenEquation | AtRest | None
-MOST_DEAR = {1: 20.0, 2: 6.5, 3: 3.5}  # how much less than the plainest each mistake of so many is believed at most
 STATES_OF_VALUES = 12  # sets of values of the parameters at which an answer is compared
 
 
@@ -199,7 +199,7 @@ def simplest_explanation(
         ):
             for target in some if not best[1] or some is known or best[1][0].cost >= believed else ():
                 with suppress(DerivationError):
-                    found = [x for x in target.explained(number) if x.cost <= number * (PLAINEST + MOST_DEAR[number])]
+                    found = [x for x in target.explained(number) if x.cost <= DEAREST[number]]
                     if found and (not best[1] or found[0].cost < best[1][0].cost):
                         best, found = (target, found), best[1]
                     beside += found if not isinstance(target, Comparison) or not target.squared else []

@@ -112,6 +112,8 @@ def is_right(case: Case, written: HandEquation, kind: str, at: WrittenEquation |
         return bool(course.holds and course.begins)
     scalar = case.value(written.difference)
     if kind in ("law", "energy"):
+        if kind == "law" and case.begins_otherwise(scalar):
+            return False
         found = truth_of(case, scalar, kind)
         return bool(found.holds) and (kind == "law" or found.up_to in OF_ENERGIES)
     if kind == "equilibrium":
