@@ -111,8 +111,10 @@ def _slope(D: np.ndarray, v: np.ndarray, mu: float) -> np.ndarray:
 def _step(D: np.ndarray, now: Course, mu: float, h: float) -> Course:
     """By Runge and Kutta; what sticks goes on so."""
 
+    sticks = not np.any(now.v[1:])  # then it stays so: no rounding of its speed makes it slide
+
     def rate(x: np.ndarray) -> np.ndarray:
-        F = np.concatenate([[1.0], _force(D, x[: len(D)], mu)])
+        F = np.concatenate([[1.0], _force(D, now.v if sticks else x[: len(D)], mu)])
         return np.concatenate([D @ F, F, [x[0]]])
 
     x = np.concatenate([now.v, now.p, [now.W]])
@@ -122,6 +124,6 @@ def _step(D: np.ndarray, now: Course, mu: float, h: float) -> Course:
     d = rate(x + h * c)
     x = x + h / 6 * (a + 2 * b + 2 * c + d)
     v = x[: len(D)]
-    if not np.any(now.v[1:]):
+    if sticks:
         v[1:] = 0.0
     return Course(v, x[len(D) : 2 * len(D)], float(x[-1]))
