@@ -280,6 +280,7 @@ def test_a_body_turned_by_a_quaternion_stands_in_every_phase_as_declared():
 
 def test_a_quaternion_that_turns_the_other_way_is_told_in_every_phase(monkeypatch):
     """R(e)^T = R(e0, -e1, -e2, -e3): the norm is 1, the pose is another."""
-    right = orientation._by_quaternion
-    monkeypatch.setattr(orientation, "_by_quaternion", lambda e: right((e[0], *(-x for x in e[1:]))))
+    turned = orientation.UnitQuaternion.rotation.fget
+    other = property(lambda e: turned(type(e)(e[0], *(-x for x in e[1:]))))
+    monkeypatch.setattr(orientation.UnitQuaternion, "rotation", other)
     assert STAND in failing_of_the_fall()
