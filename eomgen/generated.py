@@ -222,11 +222,14 @@ class Generated:
         tested = None
         if x0 is not None and p0 is not None:
             fine = pipeline.simulate(self.model, time=TESTED, rtol=FINE, atol=FINE, samples=2)
+            end = next((x.t for x in fine.impacts if not PhaseIntegrator.decides(self.model, x)), math.inf)
+            if 0 < end < math.inf:
+                fine = pipeline.simulate(self.model, time=end / 2, rtol=FINE, atol=FINE, samples=2)
             struck = {impact.t for impact in fine.impacts}
             pairs = zip(fine.phases, fine.phases[1:], strict=False)
             changes = [a.end for a, b in pairs if a.end in struck or a.model.configuration != b.model.configuration]
             last = dict(zip(fine.moving, fine.x[-1].tolist(), strict=True))
-            tested = (changes, float(fine.t[-1]), last) if fine.ok else None
+            tested = (changes, float(fine.t[-1]), last) if fine.ok and end > 0 else None
         p = np.array(p0 if p0 is not None else [math.nan] * len(self.model.parameters))
         models = PhaseModels(self.model, p, "numpy")
         states = tuple(x.name for x in self.motion[0].states)

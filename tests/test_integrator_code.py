@@ -225,6 +225,39 @@ def through_phases(tmp_path: Path, name: str) -> Path:
     return tmp_path
 
 
+COLLAR = """
+space = "plane"
+parameters = { m = 2, mu = 0.2, L = 0.3, e = 0.1, k = 300 }
+coordinates = { x = { start = 0.2 } }
+states = { W = { start = 0, unit = "J", rate = "abs(friction(collar)*x')" } }
+points = { A = [0, "e"] }
+[bodies.collar]
+mass = "m"
+inertia = 0.02
+points = { H = [0, "e"] }
+[bodies.collar.joint]
+kind = "prismatic"
+axis = [1, 0]
+displacement = "x"
+friction = { coefficient = "mu", length = "L" }
+limits = [-0.15, 0.3]
+[forces]
+weight = { kind = "gravity", acceleration = [0, -9.81] }
+spring = { kind = "spring", points = ["A", "collar.H"], stiffness = "k", length = 0 }
+"""
+
+
+@needs_compiler
+@pytest.mark.slow
+def test_its_own_test_ends_before_an_impact_that_it_does_not_decide(tmp_path):
+    """A collar that rubs by its force comes to its stop; both stops at once close nowhere, and are no phase."""
+    eomgen.generate(eomgen.loads("eomgen = 1" + COLLAR), name="collar", integrator=True).write(tmp_path)
+    files = [CC, *STRICT, "-Dcollar_RUN_SELFTEST", "collar_run.c", "collar_rhs.c", "-lm", "-o", "own"]
+    subprocess.run(files, cwd=tmp_path, check=True)
+    assert subprocess.run([tmp_path / "own"], check=False).returncode == 0
+    assert "collar_RUN_SELFTEST" in (tmp_path / "collar_run.c").read_text()
+
+
 @pytest.mark.slow
 @needs_compiler
 @pytest.mark.parametrize(

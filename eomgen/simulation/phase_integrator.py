@@ -37,10 +37,12 @@ from eomgen.simulation.phase_tables import (
     bound_of,
     code_of,
     contact_numbers,
+    impact_rules,
     is_decidable,
     is_force,
     tests_of,
 )
+from eomgen.simulation.result import Impact
 from eomgen.simulation.singular import NEARNESS
 
 MOST_PHASES = 128  # that are written
@@ -141,6 +143,12 @@ class PhaseIntegrator:
                 raise UsageError(f"no integrator for {contact.words}, which {what}", fix=fix)
         if len(model.contacts) > MOST_CONTACTS or math.prod(len(_modes(c)) for c in model.contacts) > MOST_PHASES:
             raise UsageError(f"no integrator for {len(model.contacts)} contacts: too many phases", fix=fix)
+
+    @staticmethod
+    def decides(model: Model, impact: Impact) -> bool:
+        """True if it goes on through an impact; else it ends there."""
+        _, alone, rubs = impact_rules(model)
+        return not (rubs or (alone and "," in impact.contact))
 
     def files(self) -> dict[str, str]:
         """NAME_run.h and NAME_run.c.
@@ -326,11 +334,7 @@ class PhaseIntegrator:
             for contact in model.contacts
         )
         text.tables.append(f"static const struct contact NAME_kinds[] = {{{listed}}};")
-        rules = model.impact
-        alone = rules is not None and (rules.order == "sequential" or rules.law not in (None, "newton"))
-        laws = (law for b in model.bodies.values() if b.joint is not None for _, _, law in b.joint.frictions)
-        rubs = any(law.coulomb is not None for law in laws)
-        dry = any(contact.dry for contact in model.contacts)
+        dry, alone, rubs = impact_rules(model)
         text.lines.append("o->k.contacts = NAME_kinds;")
         text.lines.append(f"o->k.any_dry = {int(dry)}, o->k.alone = {int(alone)}, o->k.rubs = {int(rubs)};")
         text.lines.append("o->k.is_rate = NAME_is_rate;")

@@ -221,7 +221,10 @@ class PhaseModels:
 
     def _phase(self, configuration: Configuration) -> PhaseModel:
         model = on_pieces(self.model, configuration.pieces)
-        declared = self._system(model, configuration) if self._derived is None else self._derived.system
+        if self._derived is None:
+            declared = Quantities.put_into_rates(self._system(model, configuration))
+        else:
+            declared = self._derived.system
         system = integrated_system(declared)
         equations = self._equations(system)
         lengths = {body: self._length(system, body, k) for body, k in configuration.pieces.items()}
@@ -242,10 +245,10 @@ class PhaseModels:
         contacts are not those of each alone. Then all that can end are released together, and those that hold close.
         """
         if not configuration.open or self._straight:
-            return Quantities.put_into_rates(_opened(model, configuration.modes))
+            return _opened(model, configuration.modes)
         all_open = {**configuration.modes, **dict.fromkeys(self.ends, OPEN)}
         released = _opened(model, all_open)
-        return Quantities.put_into_rates(System.of(released.scope.model, configuration.modes, begun_as=released))
+        return System.of(released.scope.model, configuration.modes, begun_as=released)
 
     @property
     def _straight(self) -> bool:

@@ -14,7 +14,7 @@ import numpy as np
 from eomgen.codegen import Address, RightHandSide
 from eomgen.errors import DerivationError
 from eomgen.mechanics.kinematics import ContactMode
-from eomgen.model import Contact, JointFriction, Table
+from eomgen.model import Contact, JointFriction, Model, Table
 from eomgen.simulation.compiled_steps import CompiledSteps
 from eomgen.simulation.constraint_drift import RankLookout
 from eomgen.simulation.contacts import Configuration, EventFunction, Signal
@@ -214,6 +214,14 @@ MOST_DONE = 256  # phases that are given at once
 ROOM = 1 << 16  # numbers of rows and of tracks that are given at once, beside those of one march
 
 
+def impact_rules(model: Model) -> tuple[bool, bool, bool]:
+    """(a contact is dry, C decides impacts of single contacts alone, it decides none: a joint rubs by its force)."""
+    rules = model.impact
+    alone = rules is not None and (rules.order == "sequential" or rules.law not in (None, "newton"))
+    laws = (law for b in model.bodies.values() if b.joint is not None for _, _, law in b.joint.frictions)
+    return any(contact.dry for contact in model.contacts), alone, any(law.coulomb is not None for law in laws)
+
+
 class TablesInC:
     """The tables of phases.c for a model, and all that they point at.
 
@@ -241,11 +249,7 @@ class TablesInC:
         m.is_rate, m.values = self._put(self._is_rate), self._put(self.values)
         m.begun, m.after = self._put(self.begins), self._put(self.after)
         m.x, m.last = self._put(np.zeros(n)), self._put(np.zeros(n))
-        m.any_dry = any(contact.dry for contact in model.contacts)
-        rules = model.impact
-        m.alone = rules is not None and (rules.order == "sequential" or rules.law not in (None, "newton"))
-        frictions = (law for b in model.bodies.values() if b.joint is not None for _, _, law in b.joint.frictions)
-        m.rubs = any(law.coulomb is not None for law in frictions)
+        m.any_dry, m.alone, m.rubs = impact_rules(model)
         self.p = np.array(models.p, dtype=float)
         m.p, m.generation = self._put(self.p), 1
         held = self._release()
