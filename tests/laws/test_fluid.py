@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import textwrap
 
 import numpy as np
 import pytest
@@ -309,3 +310,23 @@ def test_the_reactions_beside_an_added_mass_at_a_point_that_moves_in_its_body_ar
     text = text.replace("bob.center", "bob.P", 1) + "outputs.A = 'reaction_x(bob)'\n"
     answer = eomgen.solve(eomgen.loads(text))["A"]
     assert answer.value is None and "water" in answer.message
+
+
+def test_a_wrong_equation_names_the_fluid_whose_inertia_it_lacks():
+    """Of two energies that are given the one that is missing, by its own name."""
+    text = """
+    eomgen = 1
+    space = "plane"
+    parameters = { m = 2, ma = 3, J = 1 }
+    coordinates = { x = 0 }
+    [bodies.hull]
+    mass = "m"
+    joint = { kind = "prismatic", axis = [1, 0], displacement = "x" }
+    [forces]
+    water = { kind = "added_mass", point = "hull.origin", diagonal = ["ma", 0, 0] }
+    wheel = { kind = "kinetic", energy = "J*x'^2/2" }
+    pull = { kind = "force", point = "hull.origin", force = [5, 0] }
+    """
+    verdict = eomgen.verify(eomgen.loads(textwrap.dedent(text)), "(m + J)*x'' = 5")
+    assert any("of water" in cause.text for cause in verdict.causes)
+    assert not any("of wheel" in cause.text for cause in verdict.causes)

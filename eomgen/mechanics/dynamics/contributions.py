@@ -41,8 +41,8 @@ class Contribution:
         T, V: its share of the energies.
         gained: what d/dt dT/du gains by mass that comes; () of a constant mass.
         Q: its generalized forces of what has no potential, one for each speed of the free system.
-        kind: "translation", "rotation", "weight", "constant" (a force whose work is that of a potential, which the
-            model's V does not hold), "force", "friction" or "constraint".
+        kind: "translation", "rotation", "given" (a kinetic energy), "weight", "constant" (a force whose work is that of
+            a potential, which the model's V does not hold), "force", "friction" or "constraint".
         load: what acts, and where.
         row: its share of the equations, where it is no energy and no load: friction, constraints.
     """
@@ -179,8 +179,9 @@ class Contributions:
                 if not is_zero(T):
                     name = f"the {kind} of {link.name}"
                     found.append(Contribution(name, link.name, "", T, gained=gained, kind=kind))
-        given = SystemInertia(motion).given_energy
-        return found if is_zero(given) else [*found, Contribution("the given kinetic energy", T=given, kind="given")]
+        given = inertia.given_energies.items()
+        energies = (Contribution(f"the kinetic energy of {name}", force=name, T=T, kind="given") for name, T in given)
+        return [*found, *(part for part in energies if not is_zero(part.T))]
 
     def _forces(self) -> list[Contribution]:
         loads, found = self.operator.base.loads, list[Contribution]()

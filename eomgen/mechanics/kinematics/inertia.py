@@ -176,8 +176,14 @@ class SystemInertia:
     @property
     def given_energy(self) -> Scalar:
         """T of the energies that are given, in the speeds [J]."""
-        w, T = _given_kinetic(self.motion)
-        return substituted((T,), dict(zip(w, self.motion.scope.rates, strict=True)))[0]
+        return sum(self.given_energies.values(), start=0)
+
+    @property
+    def given_energies(self) -> dict[str, Scalar]:
+        """T of each energy that is given, by the name of its force, in the speeds [J]."""
+        w, given = _given_kinetics(self.motion)
+        energies = substituted(tuple(given.values()), dict(zip(w, self.motion.scope.rates, strict=True)))
+        return dict(zip(given, energies, strict=True))
 
     @property
     def given_momenta(self) -> ScalarRow:
@@ -265,16 +271,22 @@ def _by_twist(link: BodyLink, mass: MassProperties) -> BodyEnergy:
 
 
 def _given_kinetic(motion: Motion, placeless: bool = False) -> tuple[tuple[Node, ...], Scalar]:
-    """(w, T): the kinetic energies that the model gives, in names w of the rates of all coordinates.
+    """(w, T): the kinetic energy that the model gives, as of `_given_kinetics`."""
+    w, given = _given_kinetics(motion, placeless)
+    return w, sum(given.values(), start=0)
+
+
+def _given_kinetics(motion: Motion, placeless: bool = False) -> tuple[tuple[Node, ...], dict[str, Scalar]]:
+    """(w, {force: T}): the kinetic energies that the model gives, in names w of the rates of all coordinates.
 
     Args:
         placeless: those of coordinates alone.
     """
     scope = motion.scope.over_rates
     own = {name: force for name, force in scope.model.forces.items() if force.placeless or not placeless}
-    scenes = ((force, SystemScene(Motion(scope, motion.links), name)) for name, force in own.items())
-    given = (force.kinetic_energy(scene) for force, scene in scenes)
-    return scope.symbols.u, sum((T for T in given if T is not None), start=0)
+    links = Motion(scope, motion.links)
+    given = {name: force.kinetic_energy(SystemScene(links, name)) for name, force in own.items()}
+    return scope.symbols.u, {name: T for name, T in given.items() if T is not None}
 
 
 def _given_mass(motion: Motion, placeless: bool = False) -> list[tuple[int, int, Scalar]]:
